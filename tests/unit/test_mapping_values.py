@@ -92,3 +92,4 @@ def test_texts_for_records_are_json_where_that_is_possible():
         '{"x":1}',
     ]
     assert text_of(len) == "<built-in function len>"
+    assert text_of(10**5000) == "a value of type int"

@@ -10,7 +10,6 @@ import ast
 import io
 import tokenize
 import warnings
-from collections.abc import Iterable
 from typing import Literal
 
 import msgspec
@@ -58,9 +57,9 @@ class CodeLine(msgspec.Struct, frozen=True):
 class PythonCode(msgspec.Struct, frozen=True):
     """A snippet that is valid Python by itself.
 
-    `reads`, `assigns` and `calls` are bare names; `surely_assigns` are those set on every way to the end.
-    `returns` says whether control always, sometimes or never leaves by `return`; `is_plain` that an
-    expression can stand anywhere without parentheses of its own, `is_true` that it is the word True.
+    `reads`, `assigns` and `calls` are bare names. `returns` says whether control always, sometimes or never
+    leaves by `return`; `is_plain` that an expression can stand anywhere without parentheses of its own,
+    `is_true` that it is the word True.
     """
 
     lines: tuple[CodeLine, ...]
@@ -70,7 +69,6 @@ class PythonCode(msgspec.Struct, frozen=True):
     returns: Literal["always", "sometimes", "never"] = "never"
     is_plain: bool = False
     is_true: bool = False
-    surely_assigns: frozenset[str] = frozenset()
 
 
 def read_body(snippet: Snippet) -> PythonCode | Diagnostic:
@@ -86,8 +84,7 @@ def read_body(snippet: Snippet) -> PythonCode | Diagnostic:
         returns: Literal["always", "sometimes", "never"] = "always"
     else:
         returns = "sometimes" if names.returns else "never"
-    sure = frozenset(_surely_assigned(tree.body))
-    return PythonCode(lines, names.reads, names.assigns, names.calls, returns, surely_assigns=sure)
+    return PythonCode(lines, names.reads, names.assigns, names.calls, returns)
 
 
 def read_expression(snippet: Snippet) -> PythonCode | Diagnostic:
@@ -220,57 +217,12 @@ def _always_returns(statements: list[ast.stmt]) -> bool:
             return True
         case ast.If(body=body, orelse=orelse):
             return _always_returns(body) and _always_returns(orelse)
-        case ast.With(items=items, body=body):
-            return _always_returns(body) and not _may_suppress(items)
         case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=final):
             return _always_returns(final) or (
                 _always_returns(orelse or body) and all(_always_returns(handler.body) for handler in handlers)
             )
         case _:
             return False
-
-
-def _may_suppress(items: list[ast.withitem]) -> bool:
-    """Returns whether a `with` goes on behind what fails in it."""
-    return any("suppress" in ast.unparse(item.context_expr) for item in items)
-
-
-def _surely_assigned(statements: list[ast.stmt]) -> set[str]:
-    """The names that are set on every way to the end of the statements."""
-    names: set[str] = set()
-    for statement in statements:
-        match statement:
-            case ast.If(body=body, orelse=orelse):
-                names |= _assigned_by_all(body, orelse)
-            case ast.Match(cases=cases):
-                last = cases[-1]
-                is_whole = (
-                    last.guard is None and isinstance(last.pattern, ast.MatchAs) and not last.pattern.pattern
-                )
-                names |= _assigned_by_all(*(case.body for case in cases)) if is_whole else set()
-            case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=final):
-                ways = [handler.body for handler in handlers]
-                names |= _assigned_by_all([*body, *orelse], *ways) | _surely_assigned(final)
-            case ast.With(items=items, body=body) | ast.AsyncWith(items=items, body=body):
-                names |= _bound_in([item.optional_vars for item in items if item.optional_vars is not None])
-                names |= set() if _may_suppress(items) else _surely_assigned(body)
-            case ast.For() | ast.AsyncFor() | ast.While() | ast.TryStar():
-                pass
-            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
-                names.add(name)
-            case _:
-                names |= _bound_in([statement])
-    return names
-
-
-def _assigned_by_all(*ways: list[ast.stmt]) -> set[str]:
-    """The names that are set on each of the ways that go on."""
-    going_on = [_surely_assigned(way) for way in ways if not _always_returns(way)]
-    return set.intersection(*going_on) if going_on else set()
-
-
-def _bound_in(parts: Iterable[ast.AST]) -> set[str]:
-    return {name for part in parts for node in own_scope(part) for name in names_bound_by(node)}
 
 
 class _Names:

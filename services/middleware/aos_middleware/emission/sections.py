@@ -104,8 +104,8 @@ class Sections:
         if needs_end:
             origin = LineOrigin.of_span(variable.span)
             lines.append(self._snippets.marks.line(f"    return {variable.name}", origin))
-        is_kept = is_topic or variable.name in code.assigns - code.surely_assigns
-        own = {variable.name} if is_kept and needs_end else set()
+        may_give = is_topic or variable.name in code.assigns or code.returns == "sometimes"
+        own = {variable.name} if may_give and needs_end else set()
         if is_topic:
             source = f"a message ({word(variable.message_type)}) on {word(variable.topic)}"
         else:

@@ -7,6 +7,7 @@ the framework's class cannot be imported, and `plain_from` turns both, and the r
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 import msgspec
@@ -93,13 +94,17 @@ def is_truth(value: Any) -> bool:
 
 def text_of(value: Any) -> str:
     """A local variable's value for people and records: JSON where it is plain data, else its `repr`, as of a
-    number that is not finite."""
-    try:
-        plain = plain_from(value)
-        is_json = not isinstance(plain, float) or math.isfinite(plain)
-        return msgspec.json.encode(plain).decode() if is_json else str(plain)
-    except (TypeError, ValueError, OverflowError):
-        return repr(value)
+    number that is not finite; its type where that raises, as for a whole number of 5,000 digits."""
+    for text in (_plain_text, repr):
+        with suppress(Exception):
+            return text(value)
+    return f"a value of type {type(value).__name__}"
+
+
+def _plain_text(value: Any) -> str:
+    plain = plain_from(value)
+    is_json = not isinstance(plain, float) or math.isfinite(plain)
+    return msgspec.json.encode(plain).decode() if is_json else str(plain)
 
 
 def kept_texts(texts: Mapping[str, str]) -> dict[str, str]:

@@ -15,7 +15,7 @@ def request():
     return {}
 
 
-def there_from_response(__input):
+def there_from_response(__input, there):
     """The value of there after the result of /go."""
     there = __input.there
     return there

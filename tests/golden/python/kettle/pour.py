@@ -32,13 +32,13 @@ def request(handle):
     }
 
 
-def success_from_response(__input):
+def success_from_response(__input, success):
     """The value of success after the result of /pour."""
     success = __input.success
     return success
 
 
-def grip_from_response(__input):
+def grip_from_response(__input, grip):
     """The value of grip after the result of /pour."""
     grip = __input.grip
     return grip
