@@ -181,11 +181,15 @@ async def test_a_module_that_cannot_be_loaded_names_the_import(evaluator: Start)
     assert mapping.pid is None
 
 
-async def test_what_cannot_be_sent_is_refused_with_its_type(evaluator: Start):
-    mapping = evaluator(HEAD + "parameter: a\ncode:\nobject()\n")
-    assert "a value of type object is no plain data" in str(await fault_of(mapping))
-    mapping = evaluator(HEAD + "parameter: a\ncode:\n2 ** 80\n")
-    assert (await fault_of(mapping)).code == "AOS401"
+@pytest.mark.parametrize(
+    ("value", "why"),
+    [("object()", "a value of type object is no plain data"), ("2 ** 80", "can't serialize ints")],
+)
+async def test_what_cannot_be_sent_is_refused_at_its_field(evaluator: Start, value, why):
+    mapping = evaluator(HEAD + f"parameter: a\ncode:\n1\nparameter: b\ncode:\n{value}\n")
+    fault = await fault_of(mapping)
+    assert f"the field b of the call cannot be sent: {why}" in str(fault)
+    assert (fault.code, fault.diagnostics[0].span.line) == ("AOS401", HEAD.count("\n") + 6)
 
 
 async def test_prints_go_to_the_mappings_log_and_not_into_the_answers(evaluator: Start, tmp_path):

@@ -73,6 +73,21 @@ weight = None
     assert answer.unset == ("weight",)
 
 
+@pytest.mark.parametrize(
+    ("code", "error", "place"),
+    [
+        ("raise ValueError('\\ud800')", "ValueError: \\ud800", "look.am:8:1"),
+        ("level = 10**5000", "ValueError: Exceeds the limit", "look.am:4:26"),
+    ],
+)
+def test_an_error_without_unicode_and_a_response_without_text_have_their_place(code, error, place):
+    text = "response_local_variable: level\nlocal_variable: level\nfrom_ros_service_response: true\n"
+    emission = emitted_with(f"{text}code:\n{code}\n")
+    answer = raised(loaded(emission), Finish({}))
+    assert answer.error.startswith(error)
+    assert str(emission.locate(answer.line, answer.column)) == place
+
+
 def test_a_service_variable_that_is_never_assigned_is_an_error_at_its_place():
     emission = emitted_with("""\
 local_variable: success

@@ -229,11 +229,11 @@ def test_what_one_activation_does_to_a_constant_does_not_reach_the_next():
     span = Span("environment.json", 1, 1)
     door = LowLevelConstant("___door", "Door", Snippet("___door.x = 1", (span,)), span)
     low_level = LowLevelDocument("garden", span, constants=(door,))
-    text = "parameter: x\ncode:\nplace.__dict__.update(x=place.x + 1) or place.x\n"
-    text += "local_variable: place\naction_parameter: goal\n"
-    mapping = loaded(emitted(HEAD + text, low_level))
-    for _ in range(2):
-        assert fields(mapping, {"goal": "___door"}) == {"x": 2}
+    for source in ("action_parameter: goal\n", "topic: /goal\ninitial_value: ___door\ncode:\npass\n"):
+        text = "parameter: x\ncode:\nplace.__dict__.update(x=place.x + 1) or place.x\n"
+        mapping = loaded(emitted(f"{HEAD}{text}local_variable: place\n{source}", low_level))
+        for _ in range(2):
+            assert fields(mapping, {"goal": "___door"}) == {"x": 2}
 
 
 def test_a_module_that_is_installed_is_used_itself():

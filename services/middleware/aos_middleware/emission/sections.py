@@ -187,12 +187,11 @@ class Sections:
         )
 
     def _observe_text(self, name: str) -> Function:
+        span = self._mapping.response_variable_span or self._mapping.span
         if name not in self._snippets.variables:
-            self._snippets.mistake(
-                "AOS110", f"the response is the text of {name}, no local variable", self._mapping.span
-            )
+            self._snippets.mistake("AOS110", f"the response is the text of {name}, no local variable", span)
         summary = f"The response: the text of {word(name)}."
-        origin = LineOrigin.of_span(self._mapping.span)
+        origin = LineOrigin.of_span(span)
         line = self._snippets.marks.line(f"    return None if {name} is None else str({name})", origin)
         return Function("observe", name, summary, (line,))
 

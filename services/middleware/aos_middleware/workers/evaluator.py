@@ -208,7 +208,10 @@ class Evaluator:
         return answer
 
     def _raised(self, answer: frames.Raised) -> MappingFault:
-        place = self.emitted.locate(answer.line, answer.column) if answer.line else None
+        fields = self.emitted.mapping.activation.fields
+        place = next((field.value.span for field in fields if field.name == answer.field), None)
+        if answer.line and place is None:
+            place = self.emitted.locate(answer.line, answer.column)
         unset = self._unset(answer)
         hint = f"Send it, or give the variable an initial_value in {self.emitted.skill}.am"
         return self._fault(

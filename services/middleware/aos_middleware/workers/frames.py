@@ -82,7 +82,8 @@ class Observed(msgspec.Struct, frozen=True, tag=True):
 class Raised(msgspec.Struct, frozen=True, tag=True):
     """Mapping code raised at a line and column of the module, from 1; 0 where the module is not involved.
 
-    `unset` names the local variables that the code was given as None.
+    `unset` names the local variables that the code was given as None, `field` the field of the call that
+    cannot be sent.
     """
 
     error: str
@@ -90,6 +91,7 @@ class Raised(msgspec.Struct, frozen=True, tag=True):
     column: int
     unset: tuple[str, ...] = ()
     local_variables: dict[str, str] = {}
+    field: str = ""
 
 
 Question = Load | Begin | Take | Finish

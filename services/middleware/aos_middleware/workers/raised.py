@@ -4,7 +4,7 @@ import re
 from types import CodeType, TracebackType
 
 from aos_middleware.workers.frames import Raised
-from aos_protocol.spelling import column_of, error_text, shortened
+from aos_protocol.spelling import column_of, error_text, sendable_text, shortened
 
 _MAX_ERROR_CHARACTERS = 2000
 _NAME = re.compile(r"(?<![\w.])[^\W\d]\w*")
@@ -37,7 +37,7 @@ def raised(
     else:
         text = error_text(error)
         line, column, failed = _place(error.__traceback__, file_name, lines)
-    text = text[:_MAX_ERROR_CHARACTERS]
+    text = sendable_text(text[:_MAX_ERROR_CHARACTERS])
     named = set(_NAME.findall(failed))
     if isinstance(error, TypeError) and "NoneType" not in text:
         values = (local_variables or {}).items()

@@ -32,6 +32,14 @@ class ImportRefused(Exception):
     """An import that the deployment does not allow; no ImportError, so that nothing stands in for it."""
 
 
+class UnsendableField(TypeError):
+    """A field of the call whose value the bus cannot carry."""
+
+    def __init__(self, field: str, why: Exception) -> None:
+        super().__init__(f"the field {field} of the call cannot be sent: {why}")
+        self.field = field
+
+
 class LoadedMapping:
     """A mapping's module, loaded, and the local variables of the activation that runs."""
 
@@ -59,6 +67,8 @@ class LoadedMapping:
         """The answer to a question; Raised if mapping code raised."""
         try:
             return self._answer(question)
+        except UnsendableField as error:
+            return frames.Raised(str(error), 0, 0, (), self._texts(), error.field)
         except BaseException as error:
             # Also SystemExit: it ends an evaluation, not the worker.
             unset = tuple(name for name, value in self._last_given.items() if value is None)
@@ -85,13 +95,16 @@ class LoadedMapping:
         self._assigned = {}
         self._has_stopped = self._holds = False
         with _watched(self._load.evaluation_s):
+            # As for parameters: what mapping code does to a constant ends with the activation.
+            self._namespace.update(copy.deepcopy(self._namespace.get("CONSTANTS", {})))
             named = self._with_constants(parameters)
             for path, value in low_level.items():
                 put(named, path, message_from(value))
             self._values = self._namespace["local_variables"](named)
             # A monitor calls nothing.
             request = self._namespace.get("request")
-            plain: dict[str, Any] = plain_from(self._call(request)) if request is not None else {}
+            values: dict[str, Any] = self._call(request) if request is not None else {}
+            plain = {name: _sendable(name, value) for name, value in values.items()}
         of_topics = {name for functions in self._namespace.get("TOPICS", {}).values() for name in functions}
         self._silent = {name for name in of_topics if self._values[name] is None}
         return plain
@@ -163,6 +176,16 @@ class LoadedMapping:
 
     def _texts(self) -> dict[str, str]:
         return {name: text_of(value) for name, value in self._values.items()}
+
+
+def _sendable(field: str, value: Any) -> Any:
+    """The plain data of a field's value."""
+    try:
+        plain = plain_from(value)
+        frames.pack(frames.Begun({field: plain}))
+    except Exception as error:
+        raise UnsendableField(field, error) from None
+    return plain
 
 
 def _check_truth(name: str, value: Any, code: CodeType) -> None:
