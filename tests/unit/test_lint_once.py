@@ -142,19 +142,19 @@ def test_names_to_import_that_are_no_list_are_one_error():
 
 
 @pytest.mark.parametrize(
-    ("change", "meant"),
+    ("change", "hint"),
     [
-        ('"«ServicePath→ActionPath»"', "`ServicePath`"),
+        ("ServicePath→ActionPath", "Did you mean `ServicePath`?"),
         (
-            '"«FromGlobalVariable→SKILL_PARAM»"',
-            "`FromGlobalVariable` or `FromROSServiceResponse` or `RosTopicPath`",
+            "FromGlobalVariable→SKILL_PARAM",
+            "Missing here: `FromGlobalVariable`, `FromROSServiceResponse`, `RosTopicPath`",
         ),
     ],
 )
-def test_an_unknown_key_of_an_object_that_lacks_one_is_told_with_what_it_may_mean(change, meant):
-    files, _ = changed(encoded(JSON), "go glue.json", change)
+def test_an_unknown_key_of_an_object_that_lacks_one_is_told_with_what_it_may_mean(change, hint):
+    files, _ = changed(encoded(JSON), "go glue.json", f'"«{change}»"')
     (error,) = [each for each in told_once(load_files(files).diagnostics) if each.is_error]
-    assert (error.code, error.hint) == ("AOS102", f"Did you mean {meant}?")
+    assert (error.code, error.hint) == ("AOS102", hint)
 
 
 def test_a_misspelt_truth_of_a_source_is_one_error():

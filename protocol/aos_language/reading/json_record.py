@@ -24,6 +24,7 @@ from aos_language.reading.json_text import (
 from aos_language.reading.source import Source, Text
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import Snippet
+from aos_protocol.spelling import quoted
 
 T = TypeVar("T")
 
@@ -116,8 +117,8 @@ class Record:
                 continue
             message, span = f'unknown key "{name}" in {self.what}', self.source.span(key.start + 1)
             if self._lacking:
-                meant = get_close_matches(name, self._lacking, 1, _STANDS_FOR) or self._lacking
-                hint = f"Did you mean {' or '.join(f'`{each}`' for each in meant)}?"
+                near = get_close_matches(name, self._lacking, 1, _STANDS_FOR)
+                hint = f"Did you mean `{near[0]}`?" if near else f"Missing here: {quoted(self._lacking)}"
                 self.findings.error("AOS102", message, span, hint)
             else:
                 unknown = partial(self.findings.unknown, code="AOS102", severity=Severity.WARNING)
