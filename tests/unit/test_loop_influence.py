@@ -33,10 +33,11 @@ GARDEN = json_text(
 )
 
 
-def watering(code: str, where: str, do: str) -> Project:
-    """A skill with a parameter `row` that runs this code, and then a loop over the plants."""
+def watering(code: str, where: str, do: str, garden: str = GARDEN) -> Project:
+    """A skill with a parameter `row` that runs each line of this code, and then a loop over the plants."""
     loop = {"Type": "tPlant", "ItemName": "p", "ConditionCode": where, "WhenConditionTrueCode": do}
-    blocks: list[dict[str, Any]] = [{"AssignmentCode": code or "//"}, {"IterateNextStateVars": [loop]}]
+    blocks: list[dict[str, Any]] = [{"AssignmentCode": line} for line in (code or "//").splitlines()]
+    blocks.append({"IterateNextStateVars": [loop]})
     blocks.append({"AssignmentCode": "if (state.rain) __moduleResponse = dry;"})
     skill = {
         "GlobalVariableModuleParameters": [{"Name": "row", "Type": "int"}],
@@ -47,7 +48,7 @@ def watering(code: str, where: str, do: str) -> Project:
     }
     return text_project(
         {
-            "environment.json": GARDEN,
+            "environment.json": garden,
             "water.json": json_text(skill, "PLP", "water"),
             "water.am": mapping_text("done", "dry", skill="water"),
         }
@@ -94,3 +95,17 @@ def test_groundings_that_change_different_items_are_not_alike(code, where, do):
 @pytest.mark.parametrize(("where", "do"), [("p.id == 1", "p.wet = state.rain;"), ("falls", "p.wet = true;")])
 def test_a_variable_that_reaches_an_item_matters(where, do):
     assert irrelevant_variables(watering("bool falls = state.rain;", where, do)) == set()
+
+
+def test_a_draw_shapes_the_state_through_what_earlier_assignments_point_to():
+    found = "tPlant* dry = nullptr;\nfor (auto each : state__.tPlantObjects) dry = each;\n"
+    project = watering(found + "dry->wet = AOS.Bernoulli(0.5);", "p.id == 1", "p.id = 2;")
+    sensing = sensing_draws(project)
+    assert not any(sensing.values())
+    assert not certain_rewards(project, sensing)
+
+
+def test_no_reward_is_certain_where_the_condition_of_a_special_state_draws():
+    for condition, certain in (("state.rain", {"water"}), ("AOS.Bernoulli(0.5)", set())):
+        project = watering("", "", "p.wet = true;", GARDEN.replace("state.plant.wet", condition))
+        assert certain_rewards(project, {}) == certain

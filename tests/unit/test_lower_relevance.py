@@ -156,8 +156,14 @@ NOISE = "state__.level = state.level; if (AOS.Bernoulli(0.2)) __moduleResponse =
         ("state__.level = state.row[AOS.Bernoulli(0.5)];", [False]),
         ("std::vector<int> v{1}; v.push_back(AOS.Bernoulli(0.5)); state__.level = v.back();", [False]),
         ("auto f = [&] { return AOS.Bernoulli(0.5); }; state__.level = f();", [False]),
+        ("auto round = [&](int n) { state__.level += n; return n; };"
+         "if (AOS.Bernoulli(0.5)) { int n = round(1); }", [False]),
+        ("using Place = int&; Place level = state__.level; level = AOS.Bernoulli(0.5);", [False]),
+        ("decltype(auto) most = (state__.level); most = AOS.Bernoulli(0.5);", [False]),
+        ("std::pair<int&, int&> both{state__.level, state__.known}; auto [level, known] = both;"
+         "level = AOS.Bernoulli(0.5);", [False]),
     ],
-)
+)  # fmt: skip
 def test_a_draw_shapes_only_observations_where_nothing_else_can_depend_on_it(act, expected):
     assert shaping(act) == expected
 
@@ -196,6 +202,7 @@ def test_groundings_differ_where_the_precondition_or_the_world_asks_for_them():
         ("state__.count = AOS.Bernoulli(0.9); __reward = -1;", True),
         ("__reward = AOS.Bernoulli(0.9) ? -1 : -2;", False),
         ("__reward = AOS.SampleNormal(-1, 0.5);", False),
+        ("auto& dice = AOS; __reward = dice.Bernoulli(0.9);", False),
         ("state__.level = AOS.Bernoulli(0.9);", False),
         ("bool hit = AOS.Bernoulli(0.9); __moduleResponse = hit; if (hit) __reward = -1;", False),
     ],

@@ -100,7 +100,7 @@ WARNED = [
     Rule("room.json", '"Type": "§«enum→Enum»"', "AOS127", title="a kind of type in capitals"),
     Rule("go.json", '"Type": "tDoor"«→, "§s": 1»}', "AOS102"),
     Rule("go.json",
-         '"eBadly"«→, "eNever"»]},\n         "AssignmentCode": "end = AOS.SampleDiscrete(tEnd, §{', "AOS122"),
+         '"eBadly"«→, "eNever"»]},\n     "AssignmentCode": "end = AOS.SampleDiscrete(tEnd, §{', "AOS122"),
     Rule("go.json", "{0.9, 0.1})§«;→»", "AOS127"),
     Rule("go.json", "oDoor.room§«;→» }", "AOS127"),
     Rule("go.json", '§"«→RequiredResources": [], "»DynamicModel"', "AOS102"),

@@ -50,16 +50,38 @@ class Flows(msgspec.Struct, frozen=True):
     is_opaque: bool = False
 
 
-def flows_of(cpp: Cpp, reading: frozenset[str] = frozenset(), shared: frozenset[str] = frozenset()) -> Flows:
+class Locals(msgspec.Struct):
+    """The names that the snippets of a section have declared so far, as the next snippet finds them.
+
+    `made_of` says what a name was made of, `handles` may lead to that, and `values` lead to nothing else. A
+    variable of a type in `types` may be a reference.
+    """
+
+    own: set[str] = set()
+    types: set[str] = set()
+    made_of: dict[Name, set[Name]] = {}
+    handles: set[Name] = set()
+    values: set[Name] = set()
+
+
+def flows_of(
+    cpp: Cpp,
+    reading: frozenset[str] = frozenset(),
+    shared: frozenset[str] = frozenset(),
+    local: Locals | None = None,
+) -> Flows:
     """The flows of the statements of a function body; `reading` are functions that change nothing, `shared`
-    those that change at most what they are given."""
+    those that change at most what they are given. `local` goes on from snippet to snippet."""
     if cpp.is_empty:
         return Flows()
     root = tree_of(f"void f() {{{cpp.complete}\n}}")
     if cpp.faults or root.has_error:
         return Flows(is_opaque=True)
-    own = {declaration.name for declaration in cpp.declarations}
-    walk = _Reading(_Functions(READING_FUNCTIONS | (reading - own), shared - own))
+    local = Locals() if local is None else local
+    local.own |= {declaration.name for declaration in cpp.declarations}
+    aliases = (part for node in below(root) if node.type in _ALIASES for part in below(node))
+    local.types |= shared | {text_of(part) for part in aliases if part.type == "type_identifier"}
+    walk = _Reading(_Functions((READING_FUNCTIONS | reading) - local.own, shared - local.own), local)
     walk.statement(root.children[0].child_by_field_name("body"), frozenset(), None)
     walk.flows += walk.flows_through_handles()
     draws = sorted(part.start_byte for part in below(root) if is_draw(part))
@@ -85,14 +107,13 @@ class _Reading:
     where a `break` would leave one.
     """
 
-    def __init__(self, functions: _Functions) -> None:
+    def __init__(self, functions: _Functions, local: Locals) -> None:
         self._functions = functions
+        self._types, self._values = local.types, local.values
+        self._made_of, self._handles = local.made_of, local.handles
         self.flows: list[Flow] = []
         self.used: set[Name] = set()
         self.looped: set[Name] = set()
-        self._made_of: dict[Name, set[Name]] = {}
-        self._handles: set[Name] = set()
-        self._values: set[Name] = set()
 
     def flows_through_handles(self) -> Iterator[Flow]:
         """Yields what changes where something is changed through a handle: what it is made of, also by way of
@@ -181,7 +202,8 @@ class _Reading:
         self._no_effects(whole, control)
         inner = control | names_in(whole)
         self.looped |= inner
-        is_handle = declarator.type in _HANDLE_DECLARATORS or _gives_handle(whole)
+        kind = node.child_by_field_name("type")
+        is_handle = self._may_refer(kind, declarator) or _gives_handle(whole)
         self._declare(declarator, inner, is_handle, of=names_in(whole))
         self.statement(node.child_by_field_name("body"), inner, None)
 
@@ -195,13 +217,19 @@ class _Reading:
             initial = names_in(value) if value is not None else frozenset()
             if value is not None:
                 self._no_effects(value, control)
-            is_handle = any(part.type in _HANDLE_DECLARATORS for part in below(inner)) or (
+            kind = node.child_by_field_name("type")
+            is_handle = self._may_refer(kind, inner) or (
                 value is not None and (_gives_handle(value) or _has_effects(value, self._functions))
             )
-            is_value = _is_value_type(node.child_by_field_name("type")) and inner.type == "identifier"
+            is_value = _is_value_type(kind) and inner.type == "identifier"
             if is_value:
                 self._values.add(Name(text_of(inner)))
             self._declare(inner, control | initial, is_handle and not is_value, of=initial)
+
+    def _may_refer(self, kind: tree_sitter.Node | None, declarator: tree_sitter.Node) -> bool:
+        words = {text_of(part) for part in below(kind)}
+        is_hidden = not words.isdisjoint({"decltype", *self._types})
+        return is_hidden or any(part.type in _HANDLE_DECLARATORS for part in below(declarator))
 
     def _declare(
         self, declarator: tree_sitter.Node, sources: _Control, is_handle: bool, of: frozenset[Name]
@@ -254,7 +282,8 @@ class _Reading:
         if not name.is_of_state and not name.text.startswith("__"):
             made_of = (names_in(value) for value in values)
             self._made_of.setdefault(name, set()).update(*made_of)
-            if _is_dereferenced(target) or any(_gives_handle(value) for value in values if value is not None):
+            # Any other target goes through what a variable refers to, or may do so.
+            if target.type != "identifier" or any(_gives_handle(value) for value in values if value):
                 self._handles.add(name)
         # The target's own name is a source as well, of an update as of an element among others.
         self.flows.append(Flow(name, control | names_in(node)))
@@ -265,11 +294,10 @@ class _Reading:
             self.used |= control | names_in(node)
 
 
-_WITHOUT_EFFECT = frozenset(
-    {"comment", "type_definition", "using_declaration", "alias_declaration", "enum_specifier"}
-)
+_ALIASES = ("type_definition", "alias_declaration")
+_WITHOUT_EFFECT = frozenset({"comment", "using_declaration", "enum_specifier", *_ALIASES})
 _NESTED = frozenset({"compound_statement", "else_clause", "labeled_statement", "init_statement"})
-_HANDLE_DECLARATORS = frozenset({"reference_declarator", "pointer_declarator"})
+_HANDLE_DECLARATORS = ("reference_declarator", "pointer_declarator", "structured_binding_declarator")
 _DRAWS = frozenset({"Bernoulli", "IsInitialized", "SampleDiscrete", "SampleNormal", "SampleUniform"})
 _DRAW = re.compile(r"AOS(?:Utils)?\s*(?:\.|::)\s*(?:Bernoulli|SampleDiscrete|SampleNormal|SampleUniform)")
 _EFFECTS = frozenset({
@@ -324,11 +352,6 @@ def _of_state(node: tree_sitter.Node) -> Name | None:
     if argument is None or field is None or argument.type != "identifier" or text_of(argument) not in STATES:
         return None
     return Name(text_of(field), is_of_state=True)
-
-
-def _is_dereferenced(target: tree_sitter.Node) -> bool:
-    """Returns whether a change goes through what a variable refers to, or may do so."""
-    return target.type != "identifier"
 
 
 _NUMBERS = frozenset({"bool", "char", "double", "float", "int", "long", "short", "size_t", "unsigned"})

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from aos_language.cpp.flow import STATES, Flow, Flows, Name, flows_of
+from aos_language.cpp.flow import STATES, Flow, Flows, Locals, Name, flows_of
 from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_expression
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_language.observed import is_draw
@@ -24,6 +24,7 @@ from aos_protocol.documents import Assignment, Environment, Project, Snippet
 from aos_solver.emission.lowering.shared import looked_through
 
 _OBSERVATION = frozenset({"__moduleResponse", "__moduleResponseStr", "__observed"})
+_WITHOUT_DRAW = frozenset({"Initialize", "IsInitialized", "SetNull", "Uninitialize"})
 
 
 def irrelevant_variables(project: Project) -> frozenset[str]:
@@ -66,14 +67,18 @@ def sensing_draws(project: Project) -> Mapping[Snippet, frozenset[int]]:
 def certain_rewards(project: Project, sensing: Mapping[Snippet, frozenset[int]]) -> frozenset[str]:
     """The skills whose reward follows from state and parameters: all their draws are `sensing_draws`."""
     environment = project.environment
-    around = (environment.extrinsic_changes, *(special.code for special in environment.special_states))
+    around = [*snippets_of(environment.extrinsic_changes)]
+    for special in environment.special_states:
+        around += snippets_of(special.code)
+        if special.condition is not None:
+            around.append((special.condition, read_cpp_expression(special.condition.code)))
     drawing = shared_code_of(environment).drawing
-    if _is_opaque(project) or any(_draws_of(code, drawing) for code in around):
+    if _is_opaque(project) or _draws_of(around, drawing):
         return frozenset()
     certain = set()
     for skill in project.skills:
         parts = (skill.model.precondition, skill.model.execution_time, skill.model.dynamic_model)
-        draws = [draw for code in parts for draw in _draws_of(code, drawing)]
+        draws = [draw for code in parts for draw in _draws_of(snippets_of(code), drawing)]
         if all(start in sensing.get(snippet, ()) for snippet, start in draws):
             certain.add(skill.name)
     return frozenset(certain)
@@ -122,13 +127,14 @@ def _is_opaque(project: Project) -> bool:
     return any(flows_of(cpp).is_opaque for code in _sections(project) for _, cpp in snippets_of(code))
 
 
-def _draws_of(code: tuple[Assignment, ...], drawing: frozenset[str]) -> list[tuple[Snippet, int]]:
-    """The draws of a section and its calls of `drawing` functions, each by its snippet and its start."""
+def _draws_of(snippets: Iterable[tuple[Snippet, Cpp]], drawing: frozenset[str]) -> list[tuple[Snippet, int]]:
+    """The uses of the source of draws, also under another name, and those of `drawing` functions, each by its
+    snippet and its start."""
     return [
-        (snippet, call.function.start)
-        for snippet, cpp in snippets_of(code)
-        for call in cpp.calls
-        if is_draw(call) or call.name[-1:] in {(name,) for name in drawing}
+        (snippet, mention.root.start)
+        for snippet, cpp in snippets
+        for mention in cpp.mentions
+        if mention.path[0] in {"AOS", "AOSUtils"} | drawing and mention.method not in _WITHOUT_DRAW
     ]
 
 
@@ -160,6 +166,7 @@ class _Influence:
         self._sources: dict[tuple[int, Name], set[tuple[int, Name]]] = {}
         self._used: set[tuple[int, Name]] = set()
         self._section = 0
+        self._local = Locals()
         for special in environment.special_states:
             if special.condition is not None:
                 self.use_expression(special.condition.code)
@@ -175,6 +182,7 @@ class _Influence:
     def read(self, assignments: tuple[Assignment, ...]) -> int:
         """Takes in a section, of which the snippets share their names; gives its number."""
         self._section += 1
+        self._local = Locals()
         for assignment in assignments:
             for loop in (*assignment.over_previous, *assignment.over_next):
                 # The item may be any variable of its type, so that what it is set to matters, too.
@@ -204,7 +212,7 @@ class _Influence:
     def flows(self, cpp: Cpp) -> Flows:
         """Returns what flows where in a snippet; shared functions that only read are looked through."""
         shared = self._shared
-        return flows_of(read_cpp(looked_through(cpp, shared)), shared.reading, shared.all_names)
+        return flows_of(read_cpp(looked_through(cpp, shared)), shared.reading, shared.all_names, self._local)
 
     # --- one snippet ---
 
