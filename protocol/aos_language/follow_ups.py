@@ -1,6 +1,6 @@
 """Findings that go when another one is mended are left out, so that a mistake is told once.
 
-They are known by their codes and files alone. Editors mark each place, and do not use this.
+They are known by their codes, files and names alone. Editors mark each place, and do not use this.
 """
 
 from collections.abc import Hashable, Iterable
@@ -25,9 +25,8 @@ def told_once(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     Left out are warnings and remarks on a file with errors. Where text is not taken up, so is what its file
     lacks. Where it is not, or an object of JSON lacks a key, so are names that nothing declares and no other
     name is near, in files that use what it declares. What nothing uses is not told where an unknown name may
-    have meant it. A compiler's error is left out where another error
-    stands before it in its line. A name that stands at several places is told at the first, with the others
-    in the hint.
+    have meant it. A compiler's error is left out where another error stands before it in its line. A name
+    that stands at several places is told at the first, with the others in the hint.
     """
     found = tuple(diagnostics)
     errors = [one for one in found if one.is_error]
