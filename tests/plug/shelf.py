@@ -161,7 +161,7 @@ class _World:
         return engine
 
     async def make(self, revision: int):
-        project = SimpleNamespace(digest=str(self.chance.randrange(1000)), emitted=None)
+        project = SimpleNamespace(digest=str(self.chance.randrange(1000)), emitted=None, skills=())
         await self.shelf.make(ProjectRevision(revision, "", project))
 
     async def mission(self):

@@ -83,7 +83,8 @@ def test_how_many_records_would_tell_falls_with_how_far_they_are_off():
     assert counted(discrete(1.0, 0.0), 4, 0).records_to_tell == 0
 
 
-def test_few_records_outside_of_the_number_are_told_as_what_may_be_chance(capsys):
+def test_few_records_outside_of_the_number_are_told_as_what_may_be_chance(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "120")
     for hits, verdict in ((2, "outside, and may be chance"), (3, "OUTSIDE")):
         found = counted(discrete(0.9, 0.1), 3 - hits, hits)
         print_calibration(Calibration(3, 3, (), (found,), (), "", "", ()))
