@@ -64,7 +64,7 @@ async def cannot_say(call):
     raise Mute
 
 async def loses_a_part(call):
-    part = asyncio.create_task(asyncio.sleep(1000))
+    part = asyncio.create_task(asyncio.Event().wait())
     part.cancel()
     await part
 

@@ -256,9 +256,7 @@ class _Reader:
             row = table.get((action, state), {})
             total = totals.get(id(row), 0.0)
             if not row and (keyword, action, state) not in self._last_rule:
-                lacking.append(
-                    f"{keyword}: {self._names['actions'][action]} : {self._names['states'][state]}"
-                )
+                lacking.append(self._row(keyword, action, state))
             elif abs(total - 1) > _SUM_TOLERANCE:
                 message = f"the probabilities of `{self._row(keyword, action, state)}` sum to {total:g}"
                 rule = self._last_rule.get((keyword, action, state), _WHOLE)

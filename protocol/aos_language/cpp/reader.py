@@ -18,18 +18,12 @@ from aos_language.cpp.facts import (
     Element,
     Mention,
 )
+from aos_language.cpp.idle import idle_parts, is_turned
 from aos_language.cpp.nodes import below, child_of, names_of, picks_member, text_of
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 from aos_protocol.spelling import nearest
 
 _CHANGING_FUNCTIONS = frozenset({"Initialize", "SetNull", "Uninitialize", "exchange", "iota", "swap", "tie"})
-_PLAIN = frozenset({"field_expression", "identifier", "number_literal", "string_literal", "true", "false"})
-"""Expressions that do nothing but have a value."""
-_PARTS_OF_VALUES = _PLAIN | {
-    "binary_expression", "field_identifier", "parenthesized_expression", "subscript_argument_list",
-    "subscript_expression", "unary_expression",
-}  # fmt: skip
-"""The named parts of an expression that changes nothing."""
 
 
 class TreeReader:
@@ -101,15 +95,9 @@ class TreeReader:
         self._stack += [(node, access) for node in nodes if node is not None]
 
     def _statement(self, node: tree_sitter.Node, access: Access) -> None:
-        whole = node.named_children[0] if node.named_children else None
-        if whole is not None and whole.type == "conditional_expression":  # x == is_met ? done : failed;
-            condition, *branches = whole.named_children
-            whole = condition if all(branch.type in _PLAIN for branch in branches) else None
-        parts = whole.children if whole is not None else []
-        compared = [self.extent(part) for part in parts if part.type == "=="]
-        self.idle_operators += compared
-        if whole is not None and not compared and _only_has_a_value(whole):
-            self.idle_values.append(self.extent(whole))
+        compared, values = idle_parts(node)
+        self.idle_operators += map(self.extent, compared)
+        self.idle_values += map(self.extent, values)
         self._push(node.children)
 
     def _label(self, node: tree_sitter.Node, access: Access) -> None:
@@ -207,9 +195,8 @@ class TreeReader:
         is_plain = operator is None or text_of(operator) == "="
         left, right = child_of(node, "left"), node.child_by_field_name("right")
         kind = Access.WRITE if is_plain else Access.UPDATE
-        if operator is not None and right is not None and operator.end_byte == right.start_byte:
-            is_turned = text_of(right).startswith("+") and not text_of(right).startswith("++")
-            self.idle_operators += [self.extent(right)] if is_turned else []
+        if right is not None and is_turned(node):
+            self.idle_operators.append(self.extent(right))
         if is_plain and operator is not None and self._is_condition(node):
             self.set_in_conditions.append((self.extent(left), self.extent(operator)))
         if _HANDLERS.get(left.type) is TreeReader._path:
@@ -416,14 +403,6 @@ def _method_access(method: str, outer: Access, *, is_aos: bool) -> Access:
     if method in HANDLE_METHODS:
         return Access.BIND
     return outer
-
-
-def _only_has_a_value(node: tree_sitter.Node) -> bool:
-    """Returns whether a statement changes nothing; what `<<` and `>>` do is up to their operands."""
-    return not node.has_error and all(
-        part.type in _PARTS_OF_VALUES if part.is_named else part.type not in ("<<", ">>")
-        for part in below(node)
-    )
 
 
 def _is_type(node: tree_sitter.Node | None) -> bool:

@@ -79,8 +79,10 @@ class Call:
         except LateAnswerError as error:
             has_ended = await self._cancel(f"{request.skill} did not end within {limit_s:g} s")
             message = f"the skill at {path} did not answer within {round(limit_s, 1):g} s"
-            hint = "See the skill's log. Its time is the mapping's `max_duration`, or `timeout_s` or "
-            hint += "`activation_timeout_s` of the deploy file"
+            hint = (
+                "See the skill's log. Its time is the mapping's `max_duration`, or `timeout_s` or "
+                "`activation_timeout_s` of the deploy file"
+            )
             raise SkillError(message, code="AOS503", hint=hint) from error
         except LostAnswerError as error:
             after_s = self._clock.monotonic_s() - started_s
