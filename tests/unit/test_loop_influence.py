@@ -77,7 +77,9 @@ def test_a_draw_that_changes_an_item_shapes_the_state(code, where, do):
 
 def test_a_draw_beside_a_loop_that_only_observes_shapes_no_state():
     project = watering(DRAWN, "p.wet", "__moduleResponse = hit ? done : dry;")
-    assert any(sensing_draws(project).values())
+    sensing = sensing_draws(project)
+    assert any(sensing.values())
+    assert certain_rewards(project, sensing) == skills_alike(project) == {"water"}
 
 
 @pytest.mark.parametrize(

@@ -124,7 +124,8 @@ def _read_without_observations(
 
 def _is_opaque(project: Project) -> bool:
     """Returns whether some code hides what flows where."""
-    return any(flows_of(cpp).is_opaque for code in _sections(project) for _, cpp in snippets_of(code))
+    snippets = (snippet for code in _sections(project) for snippet, _ in snippets_of(code))
+    return any(flows_of(read_cpp(snippet.code)).is_opaque for snippet in snippets)
 
 
 def _draws_of(snippets: Iterable[tuple[Snippet, Cpp]], drawing: frozenset[str]) -> list[tuple[Snippet, int]]:
