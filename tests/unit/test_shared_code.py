@@ -137,6 +137,7 @@ def test_what_a_function_draws_and_changes_is_known():
     assert shared.reading == {"grip_of", "depth"}
     assert shared.changing == {"slips", "dig", "add"}
     assert [name.name for name in shared.names if name.is_late] == ["spade"]
+    assert not shared_code("using Place = int&; int put(Place at) { return at = 1; }").reading
 
 
 def test_only_what_functions_may_change_is_part_of_a_particle():
@@ -145,7 +146,10 @@ def test_only_what_functions_may_change_is_part_of_a_particle():
     by_whole = program(
         "{ state__.is_dug[plot] = true; } -> { auto& all = state__; all.is_dug[plot] = true; }"
     )
-    assert {variable.name for variable in by_whole.constants} == set()
+    by_reference = program(
+        "bool slips() -> int& size(auto& s) { return s.size; } bool slips()", "if (! -> size(state__)++; if (!"
+    )
+    assert not by_whole.constants and not by_reference.constants
 
 
 def test_a_vector_that_a_function_fills_has_room():

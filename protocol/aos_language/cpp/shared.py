@@ -38,6 +38,7 @@ class SharedFunction(SharedName, frozen=True):
     `takes` are its parameters' names, in their order, `written` what stands for them in the document, and
     `needs` is how many of them have no default. `draws`: it has a source of draws as a parameter of its own.
     `only_reads`: a call changes nothing and gives a plain value, which follows from the arguments.
+    `gives_handle`: a call may give a reference or a pointer.
     """
 
     parameters: int
@@ -45,6 +46,7 @@ class SharedFunction(SharedName, frozen=True):
     has_parameters: bool
     draws: bool = False
     only_reads: bool = False
+    gives_handle: bool = False
     takes: tuple[str, ...] = ()
     written: tuple[str, ...] = ()
     needs: int = 0
@@ -146,6 +148,7 @@ class _Reading:
         self._misuses: list[SharedMisuse] = []
         self._words: dict[str, set[str]] = {}
         self._late: set[str] = set(compounds)
+        self._other_types = _OTHER_TYPES
 
     def read(self, root: tree_sitter.Node) -> SharedCode:
         functions = {_declared(node) for node in root.named_children if _is_function(node)}
@@ -186,9 +189,11 @@ class _Reading:
         elif kind == "enum_specifier":
             self._enum(node)
         elif kind in ("alias_declaration", "type_definition"):
-            self._add(
-                node, node.child_by_field_name("name") or node.child_by_field_name("declarator"), "type"
-            )
+            name = node.child_by_field_name("name") or node.child_by_field_name("declarator")
+            self._add(node, name, "type")
+            if name is not None and self._other_types.search(text_of(node)):
+                names = rf"{self._other_types.pattern}|\b{re.escape(text_of(name).strip('*&( '))}\b"
+                self._other_types = re.compile(names)
         elif kind in ("struct_specifier", "class_specifier", "union_specifier"):
             self._misuse(node, "a structure in shared code", "Declare a compound type with `define_type:`")
         else:
@@ -263,9 +268,9 @@ class _Reading:
             declared = []
         self._words.setdefault(text_of(name), set()).update(_identifiers(body), _identifiers(parameters))
         written = text_of(function)[: text_of(function).index(text_of(name))]
-        is_plain = node.type == "function_definition" and _OTHER_TYPES.search(written) is None
+        gives_handle = node.type != "function_definition" or self._other_types.search(written) is not None
         has_result = re.search(r"\bvoid\b", written) is None
-        only_reads = is_plain and has_result and all(_only_read(parameter) for parameter in declared)
+        only_reads = has_result and not gives_handle and all(map(self._only_read, declared))
         self._functions.append(
             SharedFunction(
                 text_of(name),
@@ -277,11 +282,17 @@ class _Reading:
                 self._offset(body.start_byte) + 1,
                 bool(declared),
                 only_reads=only_reads,
+                gives_handle=gives_handle,
                 takes=tuple(_parameter_name(parameter) for parameter in declared),
                 written=tuple(" ".join(text_of(parameter).split()) for parameter in declared),
                 needs=sum(parameter.type == "parameter_declaration" for parameter in declared),
             )
         )
+
+    def _only_read(self, parameter: tree_sitter.Node) -> bool:
+        """Returns whether a function can change nothing of its caller's through a parameter."""
+        kind = text_of(parameter).partition("=")[0]
+        return self._other_types.search(kind) is None or _CONSTANT_REFERENCE.match(kind.strip()) is not None
 
     def _misuse(self, node: tree_sitter.Node, message: str, hint: str) -> None:
         self._misuses.append(SharedMisuse(self._extent(node), message, hint))
@@ -322,12 +333,6 @@ def _declarators(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
 def _name_node(declarator: tree_sitter.Node) -> tree_sitter.Node | None:
     last = [*_declarators(declarator)][-1]
     return last if last.type == "identifier" else None
-
-
-def _only_read(parameter: tree_sitter.Node) -> bool:
-    """Returns whether a function can change nothing of its caller's through a parameter."""
-    kind = text_of(parameter).partition("=")[0]
-    return _OTHER_TYPES.search(kind) is None or _CONSTANT_REFERENCE.match(kind.strip()) is not None
 
 
 def _parameter_name(parameter: tree_sitter.Node) -> str:

@@ -91,7 +91,7 @@ class Changes:
         parameter = function.takes[index] if index < len(function.takes) else ""
         return (
             _changed_members(self._shared.cpp, function.extent, parameter, self._inside)
-            if parameter
+            if parameter and not function.gives_handle
             else None
         )
 
