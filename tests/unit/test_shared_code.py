@@ -147,7 +147,7 @@ def test_only_what_functions_may_change_is_part_of_a_particle():
         "{ state__.is_dug[plot] = true; } -> { auto& all = state__; all.is_dug[plot] = true; }"
     )
     by_reference = program(
-        "bool slips() -> int& size(auto& s) { return s.size; } bool slips()", "if (! -> size(state__)++; if (!"
+        "bool slips() -> int& size(auto& s) { return s.size;} bool slips()", "if (! -> size(state__)++; if (!"
     )
     assert not by_whole.constants
     assert not by_reference.constants
