@@ -22,7 +22,6 @@ def read(folder: Path, text: str) -> Deployment:
 
 
 def findings(folder: Path, text: str) -> list[str]:
-    """Line, column, code and message of everything wrong with a deploy file."""
     with pytest.raises(DeployError) as caught:
         read(folder, text)
     assert caught.value.code == "AOS801"

@@ -25,7 +25,6 @@ BELIEF = BeliefSummary((), 0.0, 0.0, 0.0, 2, True)
 def use(
     tests: DriftTests, skill: str, modelled: Odds, response: str
 ) -> tuple[DriftTests, tuple[ModelDrift, ...]]:
-    """The tests after a use, and the alarms of the skill."""
     decision = DecisionRecord(
         *(0, 0, "m", 1, 1, skill, skill, {}, "d", 1, 1, 0, 1, 0.0, ()),
         tuple(PredictedObservation(name, odds) for name, odds in modelled.items()),
@@ -81,7 +80,6 @@ SKILLS: dict[str, Odds] = {
 
 
 def main() -> None:
-    """Prints the shares of alarms and of silence."""
     modelled, real = {"taken": 0.9, "missed": 0.1}, {"taken": 0.6, "missed": 0.4}
     for others in (0, 3, 9):
         found = [alarm_of(seed, modelled, real, 60, others=others) for seed in range(1000)]

@@ -64,7 +64,6 @@ def built_wheel(root: Path, folder: Path, part: str = ".") -> Path:
 def install(
     wheel: Path, environment: Path, *, without: tuple[str, ...] = (), only: tuple[str, ...] = ("",)
 ) -> None:
-    """Makes an environment with the wheel in it, and with `link_packages` what it depends on."""
     venv.create(environment, symlinks=True)
     pip: list[str | Path] = [
         sys.executable,

@@ -68,7 +68,6 @@ def found(
 
 
 def finding_texts(**texts: str) -> list[str]:
-    """Each finding as line, code, message and hint."""
     return [
         f"{finding.span.line} {finding.code} {finding.message}. {finding.hint}" for finding in found(**texts)
     ]

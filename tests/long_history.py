@@ -58,7 +58,6 @@ def main() -> None:
 
 
 def measure(count: int) -> None:
-    """Runs a router, the process that answers, and the one that joins."""
     with tempfile.TemporaryDirectory() as folder, socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
@@ -123,7 +122,6 @@ def write(path: Path, count: int) -> None:
 
 
 def record_of(sequence: int) -> DecisionRecord:
-    """A record of about the size of Tiger's."""
     step = sequence // 2 + 1
     values = [ActionValue(name, -1.2345678, 33, 0.123456, -2.345678, 3.456789) for name in ("a", "b", "c")]
     predictions = tuple(PredictedObservation(name, 0.4999999) for name in ("hear_left", "hear_right"))

@@ -35,7 +35,6 @@ def loop_program(seed: int, loops: int, depth: int) -> tuple[str, Callable[[int]
 
 
 def _loop(random: Random, number: int, depth: int) -> tuple[str, Meaning]:
-    """A loop until a number is what it should be, which its body's last draw makes possible each time."""
     end = random.randrange(3)
     others = [(number + 1) % 3, (number + 2) % 3]
     parts = [_turn(random, random.choice(others), random.randrange(3)) for _ in range(random.randrange(1, 3))]
@@ -75,7 +74,6 @@ def _draw(random: Random, number: int, end: int) -> tuple[str, Meaning]:
 
 
 def _turn(random: Random, number: int, by: int) -> tuple[str, Meaning]:
-    """A number goes on at odds that another one, or the same, tells."""
     step = random.randrange(1, 3)
 
     def meaning(odds: Odds) -> Odds:

@@ -54,7 +54,6 @@ async def until_ended(pids: list[int], timeout_s: float = HANG_S) -> None:
 
 
 async def kill_engine(pid: int | None) -> None:
-    """Kills the guard of an engine that runs, and returns once the engine has ended with it."""
     assert pid is not None
     children = descendants(pid)
     os.kill(pid, signal.SIGKILL)
@@ -77,7 +76,6 @@ async def _until_one_ended(pid: int) -> None:
 
 
 def has_listener(port: int) -> bool:
-    """Returns whether any process listens on a TCP port of this machine."""
     wanted = f":{port:04X}"
     for table in ("/proc/net/tcp", "/proc/net/tcp6"):
         for line in Path(table).read_text().splitlines()[1:]:

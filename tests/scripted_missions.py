@@ -80,12 +80,10 @@ def jammed(request: Activate) -> Outcome:
 
 
 def hears_left(request: Activate) -> Outcome:
-    """The robot of the tiger problem, which hears the tiger on the left."""
     return observed(request, "tiger_left" if request.skill == "listen" else "opened")
 
 
 def breaking(*, jams: int, is_late: int) -> Robot:
-    """A robot that breaks at two steps, in two ways, and else hears the tiger on the left."""
     ways = {jams: jammed, is_late: timed_out}
     return lambda request: ways.get(request.id.step, hears_left)(request)
 

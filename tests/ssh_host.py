@@ -75,7 +75,6 @@ if "-G" in sys.argv:
 
 
 def refusing_ssh(folder: Path, text: str) -> str:
-    """A folder for the PATH with an `ssh` that says a text and fails."""
     return _program(folder, f"#!/bin/sh\necho '{text}' >&2\nexit 255\n")
 
 

@@ -60,7 +60,6 @@ class Wrong(msgspec.Struct, frozen=True):
 
 @cache
 def wrong_robots() -> tuple[Wrong, ...]:
-    """Every claim of every shipped experiment, with its robot if it has one."""
     yaml = YAML(typ="safe", pure=True)
     entries = yaml.load((Path(__file__).parent / "wrong_robots.yaml").read_text(encoding="utf-8"))
     robots = msgspec.convert(entries, dict[str, dict[str, dict[str, WrongRobot]]])

@@ -138,7 +138,6 @@ def _function(path: str, mapping: AbstractionMapping) -> str:
 
 
 def _result(mapping: AbstractionMapping) -> dict[str, Any]:
-    """Fields that the mapping reads from a result, with an example of their type."""
     result: dict[str, Any] = {}
     if mapping.is_derived and (mapping.rules or mapping.response_variable):
         result["response"] = mapping.rules[0].response if mapping.rules else ""

@@ -105,7 +105,6 @@ def _without_duplicates(
 
 
 def _check_projects(documents: Mapping[str, Document], findings: Findings) -> None:
-    """All documents are of the environment's project, or else of that of the first file."""
     named = [document for document in documents.values() if document.project]
     leading = next((d for d in named if d.kind is DocumentKind.ENVIRONMENT), next(iter(named), None))
     others = [d for d in named if d is not leading]

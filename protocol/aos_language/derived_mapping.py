@@ -106,7 +106,6 @@ def _of_result(name: str, field: str, span: Span, kind: str = "") -> LocalVariab
 
 
 def _responses(model: SkillModel, environment: Environment | None) -> dict[str, Span]:
-    """Returns the responses that the dynamic model gives and declares nowhere, in the order of the text."""
     known = {*SPECIAL_NAMES, *_NO_RESPONSES, *(parameter.name for parameter in model.parameters)}
     if environment is not None:
         known |= {value for enum in environment.enums for value in enum.values}

@@ -18,7 +18,6 @@ _HERE = Path(__file__).parents[2] / "deploy" / "bundles" / "bench"
 
 
 def bundle_rows(arguments: argparse.Namespace, tell: Callable[[str], None]) -> Iterator[dict[str, Any]]:
-    """Yields a row for each mechanism of each bundle that is found, as soon as it is known."""
     with tempfile.TemporaryDirectory() as scratch:
         for route in BUNDLES:
             names = [name for name in route.mechanisms if name in (arguments.mechanism or route.mechanisms)]
@@ -55,7 +54,6 @@ def _found(name: str, folder: Path | None, scratch: Path) -> Path | None:
 def _returns(
     route: BundleRoute, bundle: Path, more: tuple[str, ...], arguments: argparse.Namespace
 ) -> list[float]:
-    """The discounted returns of missions, one for each seed."""
     command = [str(Path(sys.executable).with_name("aos")), "simulate", str(bundle), "--json"]
     command += [
         "--goal-probability",

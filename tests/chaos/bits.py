@@ -102,7 +102,6 @@ def _code_of(read: Callable[[], object]) -> str:
 
 
 def main() -> int:
-    """Exit code 0 where no flipped bit misled anybody."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--times", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)

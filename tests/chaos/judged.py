@@ -78,7 +78,6 @@ def _faults_of_exit_code(
 
 
 def tracebacks(folder: Path) -> list[str]:
-    """The names of the logs that have a traceback, with its last line."""
     found = []
     for log in [folder / "aos-up.log", *folder.glob("runs/*/logs/*.log")]:
         text = log.read_text(errors="replace") if log.exists() else ""

@@ -18,7 +18,6 @@ from aos_runtime.processes.children import Child
 
 
 async def started_adapter(keys: Keys, endpoint: str, run_dir: Path, service: str, **settings: Any) -> Child:
-    """A process with an adapter, whose log and ledger are in `run_dir`."""
     values = AdapterSettings(
         robot=keys.robot, service=service, endpoint=endpoint, run_dir=str(run_dir), **settings
     )

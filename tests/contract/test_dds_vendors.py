@@ -25,7 +25,6 @@ HEADER = Path("/usr/include/fastdds/dds/domain/DomainParticipant.hpp")
 
 @pytest.fixture(scope="module")
 def fast_dds_program(cache_dir: Path) -> Path:
-    """The other vendor's program, from the cache or compiled now."""
     compiler = shutil.which("g++")
     if not HEADER.exists() or compiler is None:
         pytest.skip("needs g++ and Debian's libfastrtps-dev")

@@ -27,7 +27,6 @@ return __input.level
 
 
 async def monitored(system: System) -> Driving:
-    """The project has a skill that drives, one that ends at once, and a monitor."""
     project = system.registry.current.project
     sense = skill_of(SENSE.replace("level <= 3", "True"), "sense.am")
     skills = (skill_of(DRIVE, "drive.am"), sense)

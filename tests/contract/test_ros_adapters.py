@@ -126,7 +126,6 @@ KINDS = {
 
 
 async def robot_of(kind: str, request: pytest.FixtureRequest, endpoint: str) -> tuple[Any, dict[str, Any]]:
-    """A robot that adds and counts, and the options of an adapter to it."""
     types = RosTypes("jazzy", [INTERFACES])
     robot: Any
     if kind == "ros2":

@@ -74,7 +74,6 @@ class Driving:
 
 
 async def driving(system: System, mapping: str = DRIVE) -> Driving:
-    """The project has a skill with this mapping besides `sense`, and an adapter for it."""
     project = system.registry.current.project
     skills = (*(skill for skill in project.skills if skill.name == "sense"), skill_of(mapping, "drive.am"))
     system.registry.announce(msgspec.structs.replace(project, skills=skills))

@@ -109,7 +109,6 @@ def _add_models(commands: "argparse._SubParsersAction[argparse.ArgumentParser]")
 
 
 def _add_others(commands: "argparse._SubParsersAction[argparse.ArgumentParser]"):
-    """Adds the commands about documents, robots and bundles."""
     command = commands.add_parser("documents", help="bundles of documents, compiled")
     command.add_argument("--models", type=int, default=40, metavar="N")
     command.add_argument("--seed", type=int, default=1, help="of the first bundle")

@@ -29,5 +29,4 @@ class Answers:
         return True
 
     def crash_lines(self, indent: str = "") -> list[str]:
-        """A line with the crashes, for people, where there are any."""
         return [f"{indent}crashed: {', '.join(self.crashes)}"] if self.crashes else []

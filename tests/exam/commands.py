@@ -26,7 +26,6 @@ PLANNERS = {"regret": ["auto", "look-ahead"], "values": ["auto"]}
 
 
 async def examine_documents(arguments: argparse.Namespace) -> int:
-    """Bundles of documents through the compiler."""
     truth = Driver(await built_driver(CACHE), "values", {}, patience_s=60)
     wrong = 0
     decisions, worst = 0, 0.0
@@ -96,7 +95,6 @@ def _tell_progress(text: str):
 
 
 async def examine_bundles(arguments: argparse.Namespace) -> int:
-    """The values of bundles, told one by one as rows of a table."""
     is_passed = True
     print("| bundle | planner | told | proven | returned | range | right |\n|---|---|---|---|---|---|---|")
     for bundle in arguments.bundle:
@@ -115,7 +113,6 @@ async def examine_bundles(arguments: argparse.Namespace) -> int:
 
 
 def examine_engine(arguments: argparse.Namespace) -> int:
-    """Bounds, regret or values of problems as tables, in the engine's headers."""
     summaries = {"bounds": Bounds, "regret": Regrets, "values": Values, "intervals": Intervals}
     summary: Bounds | Regrets | Values | Intervals = summaries[arguments.command]()
     # Values are held against the missions that regret is measured by.

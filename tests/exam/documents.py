@@ -64,7 +64,6 @@ def documents(seed: int) -> Documents:
 
 
 def _declare_parameters(files: dict[str, str]):
-    """Makes the share and the prize parameters, with defaults that no setting has."""
     declared = "mission_parameter: double share\ndefault_value: 0.125\n\nmission_parameter: int prize\n\n"
     files["chain.ef"] = files["chain.ef"].replace("initial_belief:", f"{declared}initial_belief:")
     files["act.sd"] = files["act.sd"].replace(f"? {PRIZE} : -{PRIZE}", "? state.prize : -state.prize")

@@ -89,7 +89,6 @@ def _text(name: str, code: str, *, source: str = "", target: str = "", alike: bo
 
 
 def _closed(text: str) -> tuple[str, str, str]:
-    """The text up to the bracket that closes it, and what is after that."""
     depth = 1
     for place, character in enumerate(text):
         depth += {"(": 1, ")": -1}.get(character, 0)

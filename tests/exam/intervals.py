@@ -127,7 +127,6 @@ class Intervals(Answers):
         ]
 
     def is_passed(self) -> bool:
-        """Returns whether enough intervals held the truth, and no sign was wrong."""
         is_held = all(
             self.counts[held] >= HELD_TARGET * self.counts[of]
             for held, of in (

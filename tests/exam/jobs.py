@@ -148,7 +148,6 @@ def _stage_sensor(source: random.Random, name: str, stages: int) -> _Skill:
 
 
 def _place_sensor(source: random.Random, name: str, places: int) -> _Skill:
-    """Tells where the thing is."""
     accuracy = source.choice((0.7, 0.85, 0.97))
     responses = [f"at_{place.lower()}" for place in PLACES[:places]]
     lines = [

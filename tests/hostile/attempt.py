@@ -101,7 +101,6 @@ class Playground:
             yield from self._mission_of_mappings(names)
 
     def _alone(self, kind: str, name: str, way: str, words: list[str]) -> Attempt:
-        """An attempt with a command of its own, whose documents are there."""
         started_s, before_s = time.monotonic(), processor_s()
         command = self._start(words, way)
         is_harmless = way == "mission" and name in _HARMLESS
@@ -130,7 +129,6 @@ class Playground:
             yield Attempt("mapping", name, "mission", told.get(name), spent_s, (*faults, *own))
 
     def _pushes(self, wanted: Wanted, chance: random.Random) -> Iterator[Attempt]:
-        """One mission that receives one hostile bundle after the other, and goes on."""
         cases = [case for case in _named(*_CASES) if wanted(*case, "push")]
         chance.shuffle(cases)
         if not cases:

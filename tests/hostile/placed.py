@@ -55,7 +55,6 @@ def placed(place: str, command: list[str], folder: Path) -> subprocess.Completed
 
 
 def is_possible(place: str) -> bool:
-    """Says whether such a place can be made here."""
     if os.getuid() != 0:
         return False
     with tempfile.TemporaryDirectory() as folder:
@@ -79,7 +78,6 @@ PLACES = ("user", "closed")
 
 
 def main() -> int:
-    """Exit code of the command."""
     if len(sys.argv) < 3 or sys.argv[1] not in PLACES:
         sys.exit(__doc__)
     place, *command = sys.argv[1:]

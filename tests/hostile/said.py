@@ -140,7 +140,6 @@ class Command:
 
 
 def _become(words: Sequence[str], folder: Path, environment: dict[str, str], output: int) -> NoReturn:
-    """Runs the command in this process, which was forked for it, and ends."""
     status = 1
     try:
         os.chdir(folder)

@@ -21,7 +21,6 @@ class Secret:
         self.renew()
 
     def renew(self):
-        """Writes another canary into the file."""
         self.canary = f"{self._head}-{secrets.token_hex(8)}"
         self.file.write_text(self.canary)
 

@@ -107,7 +107,6 @@ def machine(folder: Path) -> Iterator[Machine]:
 
 
 def _first_process(process: subprocess.Popen[bytes], folder: Path) -> int:
-    """The number here of the namespace's process 1, once it is systemd."""
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
     ends_s = time.monotonic() + _PATIENCE_S
     while time.monotonic() < ends_s and process.poll() is None:

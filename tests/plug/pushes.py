@@ -123,7 +123,6 @@ class _Game:
         self._is_over = False
 
     async def play(self, kinds: Sequence[str], undisturbed: int, superseded: float):
-        """Pushes one of each kind, or until the mission is over."""
         async with asyncio.TaskGroup() as tasks:
             followers = [tasks.create_task(self._follow()), tasks.create_task(self._follow_mappings())]
             await self._steps(undisturbed)

@@ -80,7 +80,6 @@ async def examined(problem: Problem) -> Examined:
 def _past(
     problem: Problem, weather: Weather, without: frozenset[int], source: random.Random
 ) -> tuple[Past, Belief, int]:
-    """A past that the newer documents explain, with its exact posterior, and how many steps they lack."""
     past = Past()
     belief: Belief = initial(problem, weather)
     foreign = 0

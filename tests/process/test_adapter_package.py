@@ -24,7 +24,6 @@ def wheel(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def python(wheel: Path, tmp_path_factory) -> Path:
-    """The interpreter of an environment with the package."""
     environment = tmp_path_factory.mktemp("robot") / "environment"
     install(wheel, environment, only=NEEDED, without=NOT_NEEDED)
     return environment / "bin" / "python"
@@ -32,7 +31,6 @@ def python(wheel: Path, tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def humble_python(wheel: Path, tmp_path_factory) -> Path:
-    """The Python of ROS 2 Humble, version 3.10, used as `python` is."""
     versions = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"), "versions")
     found = [*map(str, versions.glob("3.10.*/bin/python3.10")), shutil.which("python3.10") or ""]
     named = next((name for name in found if name and _runs(name)), "")

@@ -22,7 +22,6 @@ def in_a_folder(tmp_path, monkeypatch):
 
 
 def run(command: str) -> str:
-    """Runs a command, which has to succeed, and returns what it says."""
     name, *arguments = shlex.split(command)
     if name == "aos-up":
         arguments += ["--listen", "tcp/127.0.0.1:0"]

@@ -59,7 +59,6 @@ def project(tmp_path) -> Path:
 
 
 def mission(project: Path, text: str = "", **functions: str) -> tuple[int, Summary]:
-    """Exit code and summary of a mission in which these functions play the skills."""
     binding = "".join(
         f"  /{skill}: {{python: robot.py:{function}}}\n" for skill, function in functions.items()
     )

@@ -33,7 +33,6 @@ if (state.is_on) { __reward = 10; __isGoalState = true; }
 async def played(
     files: dict[str, str], response: str, drift: DriftTests | None = None
 ) -> tuple[Mission, Surroundings]:
-    """A mission of eight steps, each with the same response."""
     around = Surroundings(lambda request: observed(request, response))
     limits = MissionLimits(step_limit=8, goal_probability=2.0)
     terms = Terms(name="m", limits=limits, search=Search(simulations=50, seed=1))

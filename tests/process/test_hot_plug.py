@@ -42,7 +42,6 @@ def picked(tmp_path) -> Path:
 
 @pytest.fixture
 def deploy_file(tmp_path, picked: Path) -> Path:
-    """The shipped hot-plug deploy file on a free port, with runs of its own and the patient pick."""
     (tmp_path / "patient.py").write_text(PATIENT_PICK)
     text = (DEPLOY / "armadillo-hotplug.yaml").read_text()
     for old, new in {

@@ -256,7 +256,6 @@ def test_an_editor_that_closes_the_server_gets_exit_code_0():
 
 
 def words_of(data: Sequence[int], lines: list[str]) -> set[tuple[str, str]]:
-    """The words of packed tokens with their kinds."""
     words, line, start = set(), 0, 0
     for index in range(0, len(data), 5):
         down, right, length, kind = data[index : index + 4]

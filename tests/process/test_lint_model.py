@@ -51,7 +51,6 @@ __moduleResponse = opened;
 
 @pytest.fixture
 def hall(tmp_path) -> Callable[..., Path]:
-    """Writes a bundle with this code of the walk, this goal and this door."""
 
     def write(code: str, *, goal: str = "3", door: str = "2") -> Path:
         files = {

@@ -198,7 +198,6 @@ def done(request: Activate) -> Outcome:
 
 
 def without_flood(robot: Robot = done) -> Surroundings:
-    """Surroundings that the adapter of a skill has left."""
     around = Surroundings(robot)
     around.announced = dict.fromkeys(FIELD_SKILLS, 1)
     around.unavailable = {"flood": LEFT}

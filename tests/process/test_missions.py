@@ -81,7 +81,6 @@ class System:
         return self.ended()
 
     def beliefs(self, number: int) -> list[dict[str, Any]]:
-        """The beliefs in a mission's decision records, as marginals."""
         with Journal.read(mission_folder(self.run, number) / "journal.db") as journal:
             records = [json.loads(row.payload) for row in journal.walk("decision")]
         return [record["belief"]["marginals"] for record in records]

@@ -30,7 +30,6 @@ PRIOR = (0.5, 0.3, 0.2)
 
 
 def mapping(*locals_: str, responses: tuple[str, ...] = ("read",), skill: str = "look") -> str:
-    """A mapping with these responses and local variables, each as `type name`."""
     rules = [f"{name}: code == '{name}'" for name in responses]
     kinds = dict(reversed(local.split()) for local in ("string code", *locals_))
     return mapping_text(*rules, project="gauge", skill=skill, reports=kinds)

@@ -195,7 +195,6 @@ PROGRAMS = """programs:
 
 @pytest.fixture(scope="module")
 def template(tmp_path_factory) -> Path:
-    """A robot that is a command, with a simulator that it can only be started after."""
     folder = tmp_path_factory.mktemp("template")
     with contextlib.chdir(folder):
         aos("new", "project", "fetch")

@@ -55,7 +55,6 @@ def opened(browser: Browser, served: Gateway, width: int = 1440) -> Page:
 
 
 def kept(page: Page, name: str):
-    """Keeps a picture of the page for people, where AOS_PAGE_PICTURES names a folder for them."""
     if folder := os.environ.get("AOS_PAGE_PICTURES"):
         page.screenshot(path=Path(folder) / f"{name}.png", full_page=True)
 

@@ -65,7 +65,6 @@ def write_run(rows: Rows, run: Path):
 
 
 def records(rows: Rows) -> list[tuple[int, DecisionRecord]]:
-    """The numbers from 0 of the rows that are records, and these."""
     return [(number, said) for number, (_, said) in enumerate(rows) if isinstance(said, DecisionRecord)]
 
 

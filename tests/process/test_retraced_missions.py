@@ -96,7 +96,6 @@ def memory_of(rows: Rows) -> MissionMemory:
 
 
 async def taken_up(rows: Rows, revision: int, run: Path) -> Rows:
-    """The journal after another solver has taken the mission up with this newest revision."""
     memory = memory_of(rows)
     around = Surroundings(robot)
     async with engine_of_text(REVISIONS[revision]) as engine:

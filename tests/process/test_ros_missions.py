@@ -172,7 +172,6 @@ def in_the_checkout(arguments: str) -> list[str]:
 
 
 def events_of_until(process: subprocess.Popen[str], text: str) -> Iterator[dict[str, Any]]:
-    """Events up to one that holds a text."""
     for event in events_of(process):
         yield event
         if text in str(event):

@@ -12,7 +12,6 @@ COMPETITOR = "print(flush=True)\nwhile True: pass"
 
 @pytest.fixture
 async def one_busy_processor() -> AsyncIterator[None]:
-    """This process and what it starts have one processor, which another program keeps busy."""
     before = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {min(before)})
     competitor = await Child.start(guarded([sys.executable, "-c", COMPETITOR]), stdout=PIPE)

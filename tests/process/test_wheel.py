@@ -23,7 +23,6 @@ def aos_without_sim(wheel: Path, cache_dir: Path, tmp_path_factory) -> Installat
 
 @pytest.fixture
 def aos(aos_without_sim: Installation, tmp_path, cache_dir: Path) -> Iterator[Installation]:
-    """The installation with the extra `sim`, for one test."""
     environment = aos_without_sim.commands.parent
     links = link_packages(environment, only=SIMULATOR)
     assert links

@@ -34,7 +34,6 @@ BEING_BUILT = f"*.{os.getpid()}.*.building"
 
 @pytest.fixture(scope="module")
 def cache_dir(cache_dir: Path, tmp_path_factory) -> Path:
-    """A cache without a model, and with the engines of all tests."""
     asyncio.run(build_engine(cache_dir))
     fresh = tmp_path_factory.mktemp("cache")
     link_engines(cache_dir, fresh)

@@ -17,7 +17,6 @@ def folder(tmp_path) -> Path:
 
 
 def found(folder: Path, claim: str, deploy: str = "fetch.yaml") -> list[str]:
-    """The mistakes of a file with a test of one claim."""
     test = f"aos: 1\ntests:\n  t:\n    deploy: {deploy}\n    claims:\n      - says: so\n        {claim}\n"
     (folder / "tests.yaml").write_text(test)
     try:

@@ -131,7 +131,6 @@ WARNED_OF = {"AOS.SampleUniform", "anyValue"}
 
 
 def page_rows() -> dict[str, tuple[str, str]]:
-    """The test and the code of each construct, as tests/constructs.md lists them."""
     page = (ROOT / "tests" / "constructs.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| ([^|]+) \| `([^`|]+)` \| (AOS\d{3}) \|$", page, re.MULTILINE)
     return {name.replace("`", ""): (test, code) for name, test, code in rows}

@@ -47,7 +47,6 @@ def test_the_wealth_of_a_right_model_stays_as_it_is_in_the_mean():
 
 
 def wealth(tests: DriftTests) -> float:
-    """The wealth of a test after its uses, with what it has not bet."""
     shares = (0.08, 0.17, 0.15, 0.1, 0.1, 0.15, 0.17, 0.08)
     test = tests.tests[0]
     bets = zip(shares, test.log_wealth, strict=True)

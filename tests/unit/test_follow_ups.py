@@ -24,7 +24,6 @@ TWO_RESPONSES = {
 
 
 def told(*changes: tuple[str, str, str], texts: dict[str, str] = TEXTS) -> list[str]:
-    """The findings once these texts have become others, each as its file, line, code and hint."""
     changed = TEXTS | texts
     for document, before, after in changes:
         assert before in changed[document]

@@ -14,7 +14,6 @@ COUNT = 23
 
 @pytest.fixture
 def journal(tmp_path) -> Path:
-    """Records with none, one or more rows of other kinds between them."""
     path = tmp_path / "journal.db"
     with Journal.open(path, survives_power_loss=False) as rows:
         for sequence in range(COUNT):

@@ -16,7 +16,6 @@ RECORD = {"robot": "r", "endpoint": "", "deploy_file": "x", "seed": 1, "started"
 
 
 def opened(place: Path, *entries: str) -> list[Path]:
-    """The runs of a file with these entries, each of which has the text of a record."""
     with zipfile.ZipFile(place / "sent.aosrun", "w") as archive:
         for name in entries:
             archive.writestr(name, json.dumps(RECORD))

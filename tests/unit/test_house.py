@@ -46,7 +46,6 @@ def parameters_of(function: Function) -> list[ast.arg]:
 
 
 def is_command(function: Function, options: frozenset[str]) -> bool:
-    """Returns whether a parameter is an option or an argument of a command line, by its annotation."""
     notes = [
         ast.unparse(parameter.annotation) for parameter in parameters_of(function) if parameter.annotation
     ]

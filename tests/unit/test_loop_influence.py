@@ -34,7 +34,6 @@ GARDEN = json_text(
 
 
 def watering(code: str, where: str, do: str, garden: str = GARDEN) -> Project:
-    """A skill with a parameter `row` that runs each line of this code, and then a loop over the plants."""
     loop = {"Type": "tPlant", "ItemName": "p", "ConditionCode": where, "WhenConditionTrueCode": do}
     blocks: list[dict[str, Any]] = [{"AssignmentCode": line} for line in (code or "//").splitlines()]
     blocks.append({"IterateNextStateVars": [loop]})

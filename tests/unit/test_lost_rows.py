@@ -24,7 +24,6 @@ def intended(step: int) -> Activate:
 
 
 def write_run(run: Path, journalled_steps: int, ledger: str):
-    """A run whose ledger was asked for `STEPS` steps, and one call by hand."""
     run.mkdir()
     record = RunRecord(robot="r", endpoint="", deploy_file=str(run / "gone.yaml"), seed=1, started="", pid=1)
     (run / "run.json").write_bytes(msgspec.json.encode(record))

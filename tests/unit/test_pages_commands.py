@@ -21,7 +21,6 @@ Options = dict[Words, frozenset[str]]
 
 
 def options_of(command: TyperGroup | TyperCommand, path: Words = ()) -> Iterator[tuple[Words, str]]:
-    """Pairs of a command's words and one of its options, for the command and all below it."""
     yield path, "--help"
     for parameter in command.params:
         for name in (*parameter.opts, *parameter.secondary_opts):

@@ -13,7 +13,6 @@ from aos_solver.offline.explicit_model import ExplicitModel, Floats, Ragged
 
 
 def joint(model: ExplicitModel) -> Floats:
-    """P(next state, observation | state, action) as a dense array [state, action, next, observation]."""
     size = model.size
     dense = np.zeros((size.states, size.actions, size.states, size.observations))
     for row in range(len(model.outcomes)):

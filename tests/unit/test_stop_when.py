@@ -72,7 +72,6 @@ def test_rules_that_look_at_the_result_alone_say_nothing_of_a_stop():
 
 
 def taken(stop_when: str, *messages: Any) -> list[Taken | Raised]:
-    """The answers to one message after the other."""
     mapping = loaded(emitted(f"{HEAD}stop_when: {stop_when}\n{NEAR}"))
     fields(mapping, {})
     answers = [mapping.answer(Take([("/near", {"data": data})])) for data in messages]

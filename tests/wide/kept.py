@@ -31,7 +31,6 @@ class Problem(NamedTuple):
     world: Callable[[int, random.Random], World] | None = None
 
     def write(self, bundle: Path, size: int) -> Path:
-        """Writes the documents into a folder, which is made, and returns that."""
         bundle.mkdir(parents=True, exist_ok=True)
         for name, text in self.documents(size).items():
             (bundle / name).write_text(text)

@@ -90,7 +90,6 @@ class Survey(World):
 
 
 def survey_rule(sites: int, rng: random.Random) -> float:
-    """Leaves at once."""
     world = Survey(sites, rng)
     world.act("leave")
     return world.earned

@@ -108,7 +108,6 @@ class Towers(World):
 
 
 def towers_rule(count: int, rng: random.Random) -> float:
-    """Lays all blocks on the table, and builds the towers from below."""
     world = Towers(count, rng)
     is_laid = False  # all of them
     while not world.is_over:

@@ -30,7 +30,6 @@ class World(ABC):
         """Takes an action and returns what is reported."""
 
     def gain(self, reward: float):
-        """Counts the reward of a step, which is over then."""
         self.earned += self.discount**self.steps * reward
         self.steps += 1
 

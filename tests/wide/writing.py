@@ -22,7 +22,6 @@ class BundleWriter:
         self.files[f"{name}.sd"] = f"project: {self.project}\n{values}\n{listed}\ndynamic_model:\n{model}\n"
 
     def charger(self, battery: int):
-        """A skill that fills the battery where `at` is 0."""
         model = f"""__reward = -0.5;
 if (state.at == 0) {{
     state__.battery = {battery};

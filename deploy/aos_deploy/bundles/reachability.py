@@ -93,7 +93,6 @@ def _reached(diagnostic: Diagnostic, cheaper: str) -> Diagnostic:
 
 
 def _goal_span(environment: Environment) -> Span | None:
-    """The first special state that may be a goal."""
     for special in environment.special_states:
         code = " ".join(part.code.code for part in special.code if part.code is not None)
         is_goal = special.is_goal and not special.is_failure

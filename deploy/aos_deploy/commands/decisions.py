@@ -94,7 +94,6 @@ def _tell_no_end(directory: RunDirectory) -> None:
 
 
 def _reason(event: DecisionRecord | MissionState) -> list[str]:
-    """Returns the lines below a decision that say why that planner made it."""
     if not isinstance(event, DecisionRecord) or event.outcome is not None or not event.why:
         return []
     if not event.planner:

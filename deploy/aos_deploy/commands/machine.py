@@ -129,7 +129,6 @@ def _version_of(package: str) -> str | None:
 
 
 def _compiler() -> Finding:
-    """The first of $CXX, g++, clang++ that says its version, else the ziglang wheel."""
     for name in (os.environ.get("CXX", ""), "g++", "clang++"):
         path = shutil.which(name.split()[0]) if name.split() else None
         line = _first_line([path, "--version"]) if path else ""

@@ -55,7 +55,6 @@ def write_parquet(rows: Iterable[Row], folder: Path) -> dict[str, int]:
 
 
 def _batches(rows: Iterable[Row]) -> Iterator[tuple[str, list[dict[str, Any]]]]:
-    """The rows of each table together, so many at once."""
     kept: dict[str, list[dict[str, Any]]] = {table: [] for table in TABLES}
     for row in rows:
         kept[row.table].append(row.cells)

@@ -91,7 +91,6 @@ class JournalRules:
             self.end_ns = row.stamp_ns
 
     def _take_model(self, message: messages.MissionBegun | messages.ModelAdopted, found: Found) -> None:
-        """A belief that was handed over from another model is not that which a new solver replays."""
         if isinstance(message, messages.ModelAdopted):
             self._is_handed_over |= message.by != "replay"
             return

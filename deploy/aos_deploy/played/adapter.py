@@ -85,7 +85,6 @@ class ModelAdapter:
             await self._world.engine.close()
 
     async def _turn_to(self, mission: str) -> None:
-        """Turns to the world of another mission, in a system that stays."""
         number = number_in(self._host.run_dir.name, mission)
         if mission == self._mission or number is None:
             return

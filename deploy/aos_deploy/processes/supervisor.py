@@ -265,7 +265,6 @@ class Supervisor:
                     self._note_silence(running, serves_less=serving is not None)
 
     def _command_behind(self, serving: Serving) -> RunningProgram | None:
-        """The command that serves a path, by its name in the token or by what is bound to it."""
         for running in self._running.values():
             program = running.program
             is_meant = program.name == serving.adapter or serving.path in program.paths
@@ -334,7 +333,6 @@ class Supervisor:
         self._changed(running.program.name, state)
 
     async def _watch(self, running: RunningProgram) -> None:
-        """Raises when the process ends though nobody stopped it, and neither starts again nor is given up."""
         program = running.program
         while True:
             status = await running.child.wait()

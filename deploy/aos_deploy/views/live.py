@@ -161,7 +161,6 @@ class Screen:
         return Text("  ").append_text(progress_text(progress)) if is_of_this_step else Text()
 
     def _step_remark(self, shown: list[int]) -> Iterator[Text]:
-        """Yields the remark of the newest of the steps that has one."""
         remarked = [step for step in shown if self.steps[step].remark]
         if remarked:
             text = f"step {remarked[-1]}: {self.steps[remarked[-1]].remark}"

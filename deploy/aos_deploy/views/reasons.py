@@ -55,7 +55,6 @@ def _expected(why: Why) -> str:
 
 
 def _update(why: Why) -> str:
-    """Tells what the belief update took after the outcome, where that was long."""
     if why.update_s < _LONG_UPDATE_S:
         return ""
     effort = f": {why.update_effort}" if why.update_effort else ""
@@ -104,7 +103,6 @@ def _better_elsewhere(why: Why) -> str:
 
 
 def _side(flip: Flip) -> str:
-    """`below 0.412`, the side on which the choice is another one."""
     rises = (flip.low + flip.high) / 2 > flip.now
     if flip.is_checked and (flip.high >= 1 if rises else flip.low <= 0) and flip.high - flip.low <= 1e-3:
         return "1" if rises else "0"

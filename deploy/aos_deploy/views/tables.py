@@ -135,7 +135,6 @@ def _other_endings(runs: Collection[SimulatedRun]) -> str:
 
 
 def _runs_table(runs: Collection[SimulatedRun], stories: Mapping[int, str] | None = None) -> Table:
-    """A row for each mission, with what it did by its seed where that stands in the table."""
     table = Table()
     for name in ("seed", "world", "mission", "steps", "return"):
         is_text = name in ("world", "mission")

@@ -132,7 +132,6 @@ class Suite:
             self._rows.append(row)
 
     async def _returns(self, problem: Problem, planner: Planner, project: Project, metric: str) -> None:
-        """Missions with the seeds from `seed` on, dealt out to the jobs."""
         seed, runs = self._effort.seed, self._effort.runs_of(problem)
         label = f"{problem.name}: {metric}"
 

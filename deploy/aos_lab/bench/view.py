@@ -52,7 +52,6 @@ def _header(report: Report) -> list[str]:
 
 
 def _rows(report: Report) -> Iterator[list[str]]:
-    """One for each of our rows, with the figure that it is compared with."""
     for row in report.rows:
         if row.name != OURS:
             continue

@@ -105,7 +105,6 @@ def run(
 
 
 def _report(whole: Results, folder: Path, as_json: bool) -> None:
-    """Writes the report, and says what is in it."""
     from aos_lab.experiments.plots import draw_plots
     from aos_lab.experiments.report import write_report
 
@@ -187,7 +186,6 @@ def _begin(bar: Progress, text: str, total: int) -> Callable[[], None]:
 
 
 def _command(name: str, seeds: int, system_seeds: int, first_seed: int, parts: Sequence[str]) -> str:
-    """Returns the command that runs the same missions again."""
     command = f"aos experiment run {name} --seeds {seeds} --system-seeds {system_seeds}"
     if first_seed != 1:
         command += f" --first-seed {first_seed}"

@@ -85,7 +85,6 @@ def _axis_of(rows: Sequence[_Row]) -> _Axis:
 
 
 def _picture(title: str, rows: Sequence[_Row], axis: _Axis) -> str:
-    """Returns SVG with a dot for each row between the ends of its interval."""
     left = 12 + _CHARACTER_PX * max(len(row.label) for row in rows)
     right, floor = _WIDTH_PX - _RIGHT_PX, _TOP_PX + _ROW_PX * len(rows)
     scale = (right - left) / (axis.high - axis.low)

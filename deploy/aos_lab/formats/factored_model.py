@@ -235,7 +235,6 @@ class _Flattening:
         )
 
     def _likelihoods(self, steps: list[list[_Steps]]) -> tuple[Ragged, list[int], Integers]:
-        """The observations of every (action, key), the first row of every action, and the sights' codes."""
         firsts, rows, sights, chances, count = [], [], [], [], 0
         for action, found in zip(self._actions, steps, strict=True):
             keys = _keys(found)

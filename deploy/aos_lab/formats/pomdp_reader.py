@@ -281,7 +281,6 @@ class _Reader:
         return dict.fromkeys(self._all(kind), 1 / len(self._names[kind]))
 
     def _some(self, kind: str, word: Word, keywords: tuple[str, ...] = ()) -> Sequence[int]:
-        """Returns the numbers that a name, a number or `*` stands for."""
         if word.text == "*":
             return self._all(kind)
         number = self._numbers[kind].get(word.text)

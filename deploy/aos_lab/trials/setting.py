@@ -91,7 +91,6 @@ def _named(names: tuple[str, ...], folder: Path) -> tuple[Path, ...]:
 
 
 def _with_faults(deployment: Deployment, setting: Setting, out: Path) -> Deployment:
-    """The deployment with a world file whose faults are other ones."""
     if deployment.world is None or setting.by != "system":
         hint = (
             "Faults are those of the deploy file's `world:` in missions `by: system`, or those of skills in "

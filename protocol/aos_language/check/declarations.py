@@ -93,7 +93,6 @@ def _check_type(name: str, span: Span, scope: Scope, findings: Findings) -> bool
 
 
 def _check_index(enum: str, span: Span, scope: Scope, findings: Findings) -> None:
-    """An array is indexed by an enum of the environment."""
     if enum and enum not in scope.enums and (enum in scope.type_names or not scope.unknown_type_name(enum)):
         message = f"`{enum}` is no enum, and cannot be what an array is indexed by"
         findings.error("AOS110", message, span, f"The enums are {quoted(scope.enums)}" if scope.enums else "")

@@ -75,7 +75,6 @@ class MentionCheck:
             self._check_special_name(mention, root)
 
     def _check_drawing_function(self, mention: Mention, root: str) -> None:
-        """The source of draws is given to a function where it is called, and only there."""
         names = {function.name_extent.start for function in self._scope.shared.functions}
         if root in self._locals or (self._block.is_declarations and mention.root.start in names):
             return
@@ -100,7 +99,6 @@ class MentionCheck:
             self._findings.unknown(root, skills, message, span, hint, severity=Severity.WARNING)
 
     def _check_special_name(self, mention: Mention, root: str) -> None:
-        """A name that starts as those of the language, or is set like one of them and lacks underscores."""
         known = (*SPECIAL_NAMES, *self._scope.low_level_names)
         is_set = mention.access in (Access.WRITE, Access.UPDATE)
         is_meant = is_set and root.strip("_").lower() in _PLAIN_SPECIAL_NAMES
@@ -236,7 +234,6 @@ class MentionCheck:
             )
 
     def _check_index(self, subscript: Extent, enum: str) -> None:
-        """An array over an enum is indexed by its values, or by numbers."""
         name = self._cpp.code[subscript.start : subscript.end]
         values, owner = self._scope.enums[enum].values, self._scope.enum_values.get(name)
         if name in values or name in self._locals or name in self._declared or name in self._block.names:

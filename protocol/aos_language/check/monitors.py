@@ -43,7 +43,6 @@ def check_monitors(assembly: Assembly, scope: Scope, findings: Findings, *, is_w
 
 
 def _check_stopped(stop_when: Snippet, assembly: Assembly, findings: Findings) -> None:
-    """Warns where it can stop skills whose mappings say nothing of a stop."""
     silent = sorted(name for name, mapping in assembly.mappings.items() if not tells_of_stops(mapping))
     if silent:
         message = f"no rule says what is observed where this stops {', '.join(silent)}"

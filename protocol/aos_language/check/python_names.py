@@ -150,7 +150,6 @@ def _names_of_shared(snippet: Snippet | None) -> frozenset[str]:
 
 
 def _shared_functions(snippet: Snippet | None, hidden: tuple[str, ...]) -> dict[str, ast.FunctionDef]:
-    """The functions of the environment's `shared_mapping_code` by name, but for those that are hidden."""
     try:
         body = module_of(snippet.code).body if snippet is not None else []
     except (SyntaxError, ValueError, RecursionError, MemoryError):

@@ -69,7 +69,6 @@ def _instead(code: str, wrong: str, mode: str) -> str:
 
 
 def _check_lone_commas(snippet: Snippet, tree: ast.AST, findings: Findings) -> None:
-    """Warns where a comma at the end makes a value a tuple of one, which is always true."""
     for node in ast.walk(tree):
         match node:
             case (

@@ -92,7 +92,6 @@ def _is_no_truth(value: ast.AST) -> bool:
 
 
 def _heard(mapping: AbstractionMapping, tree: ast.AST) -> bool:
-    """Returns whether the expression reads a local variable of a topic."""
     names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
     topics = {v.name for v in mapping.local_variables if v.source is LocalSource.TOPIC}
     return bool(names & topics)

@@ -411,7 +411,6 @@ def _is_effect(node: tree_sitter.Node, functions: _Functions) -> bool:
 
 
 def _may_change(call: tree_sitter.Node, functions: _Functions) -> bool:
-    """Returns whether a call may change its object or an argument."""
     function = call.child_by_field_name("function")
     if function is None or function.type == "primitive_type":
         return False

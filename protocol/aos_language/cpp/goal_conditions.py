@@ -210,7 +210,6 @@ class _Reading:
                 self._edit(block, statement.start_byte, statement.end_byte, ";")
 
     def _set(self, name: str) -> Iterator[tuple[tree_sitter.Node, tree_sitter.Node]]:
-        """The declarations and assignments of a local variable that give it a value."""
         for _, node in self._nodes:
             if node.type == "init_declarator":
                 target, value = (node.child_by_field_name(field) for field in ("declarator", "value"))

@@ -221,7 +221,6 @@ class _Scanner:
             self._add_to_body(line)
 
     def _opens_apart(self, line: Text) -> bool:
-        """Opens the section or part whose word a line has with blanks or hyphens for underscores."""
         match = _APART.match(line.text)
         if match is None:
             return False
@@ -235,7 +234,6 @@ class _Scanner:
         return self._opens(word, at, line.after(match.end()))
 
     def _opens_without_colon(self, line: Text) -> bool:
-        """Opens the section or part that a line begins with where only its colon is missing."""
         match = _WORD_ALONE.match(line.text)
         if match is None:
             return False

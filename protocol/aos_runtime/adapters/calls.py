@@ -174,7 +174,6 @@ class Calls:
         return await answer
 
     async def _ended(self, running: RunningCall) -> Answer:
-        """Runs a call to its end, by itself, by its deadline or by a cancellation."""
         call, task = running.call, running.task
         await asyncio.wait({task}, timeout=call.deadline_s)
         is_late = not task.done()

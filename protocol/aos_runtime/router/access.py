@@ -37,7 +37,6 @@ def access_control(robot: str, parties: Iterable[Party]) -> dict[str, Any]:
 
 
 def _rules(robot: str, party: Party) -> list[dict[str, Any]]:
-    """One rule for each act, direction and permission that the party has."""
     keys: dict[tuple[Act, bool], list[str]] = {}
     for grant in grants(robot, party):
         keys.setdefault((grant.act, grant.is_denied), []).append(grant.key)

@@ -130,7 +130,6 @@ class DroppedBundles:
 
 
 def _written_ns(folder: Path) -> dict[str, int]:
-    """Returns when each document in a folder was last written, renamed or touched."""
     written = {}
     for path in folder.iterdir():
         if is_document_name(path.name):

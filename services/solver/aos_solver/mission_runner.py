@@ -171,7 +171,6 @@ class MissionRunner:
         return self.is_interrupted
 
     def _last_drift(self) -> DriftTests | None:
-        """The tests of the mission before, which go over to the next one."""
         if self.mission is not None:
             return self.mission.drift
         book = self._books.newest

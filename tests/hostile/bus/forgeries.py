@@ -194,7 +194,6 @@ def _not_announced(name: str, key: str) -> Forgery:
 
 
 def _with_id(cell: Cell, **changes: Any) -> Message:
-    """A call with an id that the mission has used for another one."""
     return _call(cell, id=ActivationId(cell.mission, 1), **changes)
 
 

@@ -71,7 +71,6 @@ def noise(seed: int) -> list[bytes]:
 
 
 def flooded_keys() -> Iterator[tuple[str, str, bool]]:
-    """(key, user, is a question) of each key that somebody may ask or tell on."""
     for row in TABLE:
         key = row.key.replace("<path>", "step").replace("<skill>", "step").replace("<topic>", "camera")
         for act, is_question in (("asks", True), ("tells", False)):

@@ -54,7 +54,6 @@ class Attempt(NamedTuple):
 
 
 def attempts(share: float = 1.0, seed: int = 1) -> Iterator[Attempt]:
-    """Every attempt, or a share of them that a seed chooses."""
     chance = random.Random(seed)
     for key in _keys():
         for party in _ALL:
@@ -64,7 +63,6 @@ def attempts(share: float = 1.0, seed: int = 1) -> Iterator[Attempt]:
 
 
 def _keys() -> Iterator[str]:
-    """Keys of every row, with names of several parties and paths, and some of no row or of another robot."""
     names = [party.name for party in _ALL]
     for row in TABLE:
         found = [row.key.replace("<skill>", "pick").replace("<topic>", "camera/front")]
@@ -77,7 +75,6 @@ def _keys() -> Iterator[str]:
 
 
 def wrong(routed: Routed, tried: Iterable[Attempt]) -> Iterator[str]:
-    """The attempts whose effect is another than the table says."""
     for attempt in tried:
         partners = [other for other in _ALL if other != attempt.party]
         able = [one for one in partners if may(ROBOT, one, _OPPOSITE[attempt.act], attempt.key)]

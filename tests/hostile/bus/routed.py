@@ -43,7 +43,6 @@ class Routed:
 
 @contextmanager
 def routed(folder: Path, parties: tuple[Party, ...]) -> Iterator[Routed]:
-    """The router of a run in the folder, with these parties, an operator and a watcher."""
     run = RunDirectory.create(folder, ROBOT, 0)
     endpoint = run.make_endpoint()
     passes = Passes(run, parties)

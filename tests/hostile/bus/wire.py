@@ -62,7 +62,6 @@ class Wire:
 
 @contextmanager
 def wire(namespace: str, here: str, there: str) -> Iterator[Wire]:
-    """The link from this namespace, at the address `here`, to a new one, at `there`."""
     ip("netns", "add", namespace)
     try:
         near, far = (_tun(f"{namespace}{number}") for number in (0, 1))

@@ -118,7 +118,6 @@ async def _no_operation(request: Request, error: Exception) -> Response:
 
 
 def _methods_at(request: Request) -> list[str]:
-    """The methods of all routes to the request's path."""
     routes = [route for route in request.app.routes if isinstance(route, Route)]
     there = (route for route in routes if route.matches(request.scope)[0] is not Match.NONE)
     return sorted({method for route in there for method in route.methods or ()})

@@ -179,7 +179,6 @@ class LoadedMapping:
 
 
 def _sendable(field: str, value: Any) -> Any:
-    """The plain data of a field's value."""
     try:
         plain = plain_from(value)
         frames.pack(frames.Begun({field: plain}))

@@ -126,7 +126,6 @@ class RosTypes:
     # --- types ---
 
     def _know(self, type_name: str, used_by: str = "") -> None:
-        """Reads the files that define a type and all that it uses."""
         if type_name in self._store.fielddefs:
             return
         name = definitions.interface_name(type_name, "msg")
@@ -243,7 +242,6 @@ def _renamed(field: Any) -> Any:
 
 
 def _with_uint8(field: Any) -> Any:
-    """A field whose type, if it is `char`, is `uint8`, as in ROS 2."""
     name, description = field
     return name, _mapped(
         description, lambda base: ("uint8", 0) if base[0] == "char" else base, lambda used: used

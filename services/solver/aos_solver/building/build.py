@@ -196,7 +196,6 @@ class _Build(msgspec.Struct, frozen=True):
 
     @property
     def _precompiled(self) -> list[str]:
-        """The options for what quick builds include, if that is compiled already."""
         if self.kind != "quick":
             return []
         return [
@@ -209,7 +208,6 @@ class _Build(msgspec.Struct, frozen=True):
         return [] if entry is None else [entry]
 
     def _state_bytes(self, model: Path) -> int:
-        """The size of the quickest engine that takes the model's states."""
         mark = _STATE_BYTES_MARK.search(model.read_bytes())
         needed = int(mark[1]) if mark is not None else 0
         if needed > MAX_STATE_BYTES:

@@ -124,7 +124,6 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
 
 
 def _declared_with(type_name: str, code: str) -> list[str]:
-    """The name that code declares, which begins with the name of its type."""
     return re.findall(rf"^{type_name}(?:<.*?>)?[&*\s]+(\w+)\s*[=;{{]", code)
 
 
@@ -193,7 +192,6 @@ def _document_place(place: tuple[str, int, int], source_name: str, emitted: Emit
 
 
 def _plain(text: str) -> tuple[str, str]:
-    """The message in the documents' terms, and the compiler's suggestion as a hint."""
     text = re.sub(r"\bmodel::(?:aos_skill_\w+::)?", "", text)
     text = re.sub(r"\.<lambda\([^)]*\)>(?=\()", "", _WITHIN.sub("", text))
     text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")

@@ -225,7 +225,6 @@ class Mission:
         return self._goes_on()
 
     def _goes_on(self) -> bool:
-        """Ends the mission where its failures call for that."""
         if self._failures.to_end:
             self._reports.end(Ending.SKILLS_FAILED, self._failures.to_end)
             return False
@@ -261,7 +260,6 @@ class Mission:
         return True
 
     def _ending(self) -> Ending | None:
-        """The ending that the belief calls for, or else the one that the world has come to."""
         return ending_of_belief(self.belief, self.state.step, self._terms.limits) or self._ports.world_ending
 
     async def _choose(self) -> Choice | Ended | None:
@@ -308,7 +306,6 @@ class Mission:
         await self._holding.until(why, goes_on, adopts=adopts)
 
     def _decide(self, choice: Choice) -> DecisionRecord:
-        """The record of a decision, which spends what the action risks."""
         risks, index = choice.risks, choice.plan.index
         actions = self._model.engine.description.actions
         told = {value.action for value in choice.plan.actions}

@@ -201,7 +201,6 @@ class Reasons:
 
 
 def _joined(traced: TracedEngine, one: RewardTerms, two: RewardTerms) -> tuple[ValueTerm, ...]:
-    """The terms of two values by their places, those that differ most first."""
     parts: dict[str, list[float]] = {}
     for column, found in enumerate((one, two)):
         for term in found.terms:

@@ -187,7 +187,6 @@ class ReplayedMission:
         return RunningModel(revision, engine)
 
     async def _begin(self, begun: messages.MissionBegun) -> messages.BeliefSummary:
-        """Begins the mission, or takes it up as another solver did, with the models of that time."""
         await self.close()
         running = await self._engine(begun.revision, begun.model_digest)
         self._running, self.engine = running, running.engine
@@ -287,5 +286,4 @@ class ReplayedMission:
 
 
 def _is_plain(start: messages.StartMission) -> bool:
-    """Says whether a mission begins with the initial belief, now."""
     return start.belief == "initial" and not start.idle and not start.given

@@ -239,7 +239,6 @@ class Asking(Closing):
             raise await self._at_its_statement(error, self._changes, [*self._world, command]) from None
 
     async def _at_its_statement(self, fault: AosError, changes: int, commands: Sequence[str]) -> AosError:
-        """The fault at its statement, if a replay of the commands finds it after so many changes."""
         commands = [*self._restoration(changes), *commands]
         return await at_its_statement(fault, self._built, self._start, commands)
 

@@ -99,7 +99,6 @@ class Capacities:
             self._alike.update(dict.fromkeys(joined, joined))
 
     def _in_numbers(self, code: str) -> str:
-        """The code with the constants' values in place of their names."""
         return self._constant.sub(lambda name: self._numbers[name[0]], code) if self._constant else code
 
     def _fills(self, call: Call) -> bool:
@@ -188,7 +187,6 @@ def _last_name(path: tuple[str, ...]) -> int:
 
 
 def _list_lengths(text: str) -> list[int]:
-    """The most elements at each depth of a braced list, which `text` begins with."""
     lengths: list[int] = []
     open_lists: list[int] = []
     parentheses = 0

@@ -158,7 +158,6 @@ class Pieces:
 
 
 def _without_texts(cpp: Cpp) -> str:
-    """The code with comments and literals blanked."""
     characters = list(strip_comments(cpp.code))
     for literal in cpp.literals:
         for index in range(literal.start, literal.end):
@@ -273,7 +272,6 @@ _RESULTS = frozenset({
 
 
 def _drawing(functions: frozenset[str]) -> Scope:
-    """Code that may call functions that draw."""
     return Scope(drawing=Scope().drawing | functions)
 
 

@@ -91,7 +91,6 @@ def copies_of(model: SkillModel, environment: Environment) -> Copies:
 def _reads_changed(
     section: tuple[Assignment, ...], older: tuple[str, ...], newer: str, names: _Names
 ) -> bool:
-    """Returns whether the section may read an older copy of a variable after it has changed the newer one."""
     if any(assignment.over_previous or assignment.over_next for assignment in section):
         return True
     uses = _uses(section, older, newer, names)
@@ -184,7 +183,6 @@ def _gives_value(call: Call, names: _Names) -> bool:
 
 
 def _given_to(functions: frozenset[str], cpp: Cpp) -> Iterator[Extent]:
-    """The arguments of calls of these functions."""
     for call in cpp.calls:
         if call.name[-1:] and call.name[-1] in functions:
             yield from call.arguments

@@ -244,7 +244,6 @@ class _Lowering:
     def _with_goal_conditions(
         self, special_states: tuple[SpecialState, ...], skills: tuple[LoweredSkill, ...]
     ) -> tuple[tuple[SpecialState, ...], tuple[LoweredSkill, ...]]:
-        """Adds the code that counts conditions, where a reward or goal has several."""
         code, replace = self._code, msgspec.structs.replace
         counted = []
         for special, lowered in zip(self._project.environment.special_states, special_states, strict=True):
@@ -332,7 +331,6 @@ def _without_absent(project: Project, absent: tuple[str, ...]) -> Project:
 
 
 def _locals(mapping: AbstractionMapping, skill: LoweredSkill) -> tuple[Local, ...]:
-    """The local variables that a correction needs."""
     needed = set(skill.reported)
     if skill.given_observation is not None:
         needed |= skill.given_observation.names - {parameter.name for parameter in skill.parameters}

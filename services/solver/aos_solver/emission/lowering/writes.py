@@ -179,7 +179,6 @@ def _passed_to_functions(cpp: Cpp, reading: frozenset[str]) -> Iterator[range]:
 
 
 def _changed_by_lambdas(cpp: Cpp, passed_on: list[range]) -> dict[int, set[str]]:
-    """The members that a lambda of the code changes, for each place where it is given the whole state."""
     lambdas = {
         declaration.name: declaration.initial
         for declaration in cpp.declarations

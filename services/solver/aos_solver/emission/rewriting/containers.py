@@ -131,7 +131,6 @@ def _is_draw(call: Call) -> bool:
 
 
 def _is_constant(text: str, values: frozenset[str]) -> bool:
-    """Returns whether a text in braces has nothing but literals and `values`."""
     rest = _WORD.sub(lambda word: "" if word[0] in values else word[0], _LITERAL.sub("", text))
     return text.startswith("{") and not rest
 

@@ -90,7 +90,6 @@ def _copy_set_from(cpp: Cpp, declaration: Declaration, type_name: str) -> str:
 
 
 def _copies_in(cpp: Cpp, type_name: str, extent: Extent | None = None) -> set[str]:
-    """The copies of the state whose objects are mentioned, in a part of the code or anywhere in it."""
     return {
         mention.path[0]
         for mention in cpp.mentions

@@ -87,7 +87,6 @@ class CleanLab(World):
         return None
 
     def _is_standing(self, cup: int) -> bool:
-        """Returns whether the cup stands on a table and is not in the hand."""
         _, _, z = self.scene.place(cup)
         is_upright = z > TABLE_TOP_M and self.scene.uprightness(cup) > UPRIGHT
         return is_upright and not self.robot.gripper.holds(cup)
