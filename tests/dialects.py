@@ -1,5 +1,3 @@
-"""Documents in every dialect, which have to say the same."""
-
 from collections.abc import Mapping
 
 from projects import files_project

@@ -1,5 +1,3 @@
-"""Lines that tell how far work is, for logs and pipes."""
-
 import sys
 import threading
 import time

@@ -1,6 +1,3 @@
-"""The contents of an SDL text at a place: the meaning of a word, the words that may stand there, its
-outline."""
-
 from __future__ import annotations
 
 import re

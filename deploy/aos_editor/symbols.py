@@ -1,5 +1,3 @@
-"""The names of a bundle that mean the same thing, and their places, in all of its files."""
-
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum

@@ -1,6 +1,3 @@
-"""Numbers as text."""
-
-
 def is_number(text: str) -> bool:
     """Returns whether Python reads the text as a number."""
     try:

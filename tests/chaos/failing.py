@@ -1,5 +1,3 @@
-"""One mission that fails at a failpoint: a process dies or freezes there, or its disk refuses a write."""
-
 import queue
 import random
 import signal

@@ -1,5 +1,3 @@
-"""The answers of the driver that are no answers: problems at which the engine failed."""
-
 import dataclasses
 from collections import defaultdict
 from typing import Any

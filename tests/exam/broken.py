@@ -1,5 +1,3 @@
-"""Missions of jobs in which one skill is broken: what was claimed, and what the world says of it."""
-
 from __future__ import annotations
 
 import random

@@ -1,5 +1,3 @@
-"""Worlds of which something is not seen: doors, boxes, rocks, machines that wear, things that run away."""
-
 import random
 from itertools import product
 

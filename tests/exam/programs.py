@@ -1,5 +1,3 @@
-"""Programs in C++ that the tests have of their own, on the engine's headers: compiled once, and kept."""
-
 import asyncio
 import subprocess
 from collections.abc import Iterable

@@ -1,5 +1,3 @@
-"""Worlds where the reward is far: corridors, grids, keys and doors, boxes to push, signs off the way."""
-
 import random
 
 from .chances import moved, noisy, odds_of, some_discount

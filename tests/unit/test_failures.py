@@ -1,6 +1,3 @@
-"""The failures of a skill: what counts as one, when the skill is set aside, and what the mission does
-then."""
-
 from math import log
 from typing import Any
 

@@ -1,5 +1,3 @@
-"""A robot that searches rooms for two people behind doors that jam, on a battery: documents and a rule."""
-
 import random
 from collections import deque
 

@@ -1,5 +1,3 @@
-"""The deploy file's `adapters:` and `bind:`: which adapters there are, and what each of them serves."""
-
 import re
 from collections.abc import Mapping
 from typing import Any

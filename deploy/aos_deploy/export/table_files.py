@@ -1,5 +1,3 @@
-"""Tables as files: CSV, or Parquet. The only import of pyarrow."""
-
 import csv
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack

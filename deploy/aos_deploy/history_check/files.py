@@ -1,5 +1,3 @@
-"""The files of a run for the check of its history."""
-
 from pathlib import Path
 
 import msgspec

@@ -1,5 +1,3 @@
-"""The rules for a mission's journal: one pass over its rows."""
-
 import hashlib
 from collections.abc import Callable
 from typing import Any, NamedTuple

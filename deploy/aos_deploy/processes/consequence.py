@@ -1,5 +1,3 @@
-"""The consequence of a program that ends by itself: started again, given up, ignored, or the run ends."""
-
 import asyncio
 from collections.abc import Iterable
 

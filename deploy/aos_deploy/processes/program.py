@@ -1,5 +1,3 @@
-"""The services of a system, as aos-up starts them: in which order, with which settings, within what time."""
-
 import sys
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,5 +1,3 @@
-"""Two missions beside each other: their settings, and the first step that differs."""
-
 import msgspec
 
 from aos_deploy.runs.directory import RunDirectory

@@ -1,5 +1,3 @@
-"""The end of a run as it remains: its `summary.json`."""
-
 import msgspec
 
 

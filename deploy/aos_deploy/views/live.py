@@ -1,5 +1,3 @@
-"""The live view of a mission in a terminal."""
-
 import io
 import threading
 import time

@@ -1,5 +1,3 @@
-"""Tables for people: the value of each action, and simulated missions."""
-
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 

@@ -1,5 +1,3 @@
-"""The benchmark's report as a table for people, and as Markdown for a page."""
-
 from collections.abc import Iterator
 
 from rich.box import SIMPLE_HEAD

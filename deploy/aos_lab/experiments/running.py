@@ -1,5 +1,3 @@
-"""An experiment's missions: those of its parts, and those of scripts."""
-
 import asyncio
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path

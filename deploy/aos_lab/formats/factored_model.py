@@ -1,5 +1,3 @@
-"""The flattening of a POMDP over variables to one over states: those that can be reached, and no others."""
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import msgspec

@@ -1,5 +1,3 @@
-"""Writes `.pomdp` and `.pomdpx`, for other planners to read."""
-
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from xml.sax.saxutils import escape

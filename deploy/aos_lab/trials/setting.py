@@ -1,5 +1,3 @@
-"""The setting of a mission: a deploy file, and what is different from it."""
-
 from pathlib import Path
 from typing import Any, Literal
 

@@ -1,5 +1,3 @@
-"""One mission that was run for its record: what was done, what came back, how it ended."""
-
 import json
 from pathlib import Path
 

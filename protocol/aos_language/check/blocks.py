@@ -1,5 +1,3 @@
-"""The pieces of model code of the documents, each with what it may read and write."""
-
 from collections.abc import Iterator, Mapping
 
 import msgspec

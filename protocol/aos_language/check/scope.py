@@ -1,5 +1,3 @@
-"""The meanings of a project's names: types, enum values, state variables, skills."""
-
 from __future__ import annotations
 
 import re

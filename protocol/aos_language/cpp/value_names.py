@@ -1,5 +1,3 @@
-"""Names in a skill's code that are both a response and a value of an enum: where the value is meant."""
-
 import re
 
 import tree_sitter

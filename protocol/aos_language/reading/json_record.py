@@ -1,5 +1,3 @@
-"""A JSON object read by key: typed values, with a finding for each that is missing, wrong or unread."""
-
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator

@@ -1,5 +1,3 @@
-"""The environment document: state and its types, initial belief, extrinsic changes, rewards, monitors."""
-
 import msgspec
 
 from aos_protocol.diagnostics import Span

@@ -1,5 +1,3 @@
-"""The environment's Python side: low-level types and constants."""
-
 import msgspec
 
 from aos_protocol.diagnostics import Span

@@ -1,5 +1,3 @@
-"""The mission: its phase, its beliefs, and its decisions."""
-
 import math
 from typing import Annotated, Any, Literal
 

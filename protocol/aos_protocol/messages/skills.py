@@ -1,5 +1,3 @@
-"""Activations: what the solver asks the middleware, and the middleware the adapters."""
-
 from typing import Any
 
 from aos_protocol.messages.base import Fault, Message

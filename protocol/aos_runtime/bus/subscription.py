@@ -1,5 +1,3 @@
-"""A stream from the bus as an asynchronous iterator with a bounded queue."""
-
 from __future__ import annotations
 
 import asyncio

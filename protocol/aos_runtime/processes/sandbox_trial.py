@@ -1,5 +1,3 @@
-"""A trial of the sandbox: a confined program that tries what it may not."""
-
 import os
 import subprocess
 import sys

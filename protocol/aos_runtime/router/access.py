@@ -1,5 +1,3 @@
-"""The router's access control, made of the table in `aos_protocol.access`, in Zenoh's words."""
-
 from __future__ import annotations
 
 from collections.abc import Iterable

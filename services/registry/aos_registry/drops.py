@@ -1,5 +1,3 @@
-"""Bundles that were dropped into the watched folder, and those of them that wait for what they lack."""
-
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable, Mapping

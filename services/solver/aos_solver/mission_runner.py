@@ -1,5 +1,3 @@
-"""The missions of a solver, one or one after the other: how each begins or is taken up, and runs."""
-
 import asyncio
 import contextlib
 import logging

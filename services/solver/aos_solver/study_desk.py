@@ -1,5 +1,3 @@
-"""The solver's answers to studies of its missions, by an engine that no mission asks."""
-
 import asyncio
 from pathlib import Path
 

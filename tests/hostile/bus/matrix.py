@@ -1,5 +1,3 @@
-"""Every party tries every act on every key: what the table allows has an effect, all else has none."""
-
 import random
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple

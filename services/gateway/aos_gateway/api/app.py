@@ -1,5 +1,3 @@
-"""The gateway as an ASGI application: access first, then the operations, then the page."""
-
 from collections.abc import Awaitable, Callable
 from http import HTTPStatus
 

@@ -1,5 +1,3 @@
-"""Pictures of states, each drawn in a process of its own, and those that were drawn last."""
-
 import asyncio
 from collections import OrderedDict
 from typing import Any

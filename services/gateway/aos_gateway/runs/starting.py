@@ -1,5 +1,3 @@
-"""Systems that the gateway starts, and that go on when the gateway ends."""
-
 import asyncio
 import os
 import subprocess

@@ -1,5 +1,3 @@
-"""The topics of one activation: each message that was sent before its call ended is evaluated, in order."""
-
 import asyncio
 import logging
 from contextlib import suppress

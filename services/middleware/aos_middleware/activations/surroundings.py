@@ -1,5 +1,3 @@
-"""The outside of an activation, which the service makes once."""
-
 from collections.abc import Callable
 from typing import NamedTuple
 

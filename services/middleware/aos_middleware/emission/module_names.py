@@ -1,5 +1,3 @@
-"""The names of a mapping's module beside its functions: shared code, low-level values, imports."""
-
 import ast
 import builtins
 import keyword

@@ -1,5 +1,3 @@
-"""The paths that can be called: liveliness tokens say who answers them."""
-
 import asyncio
 import logging
 from collections import Counter

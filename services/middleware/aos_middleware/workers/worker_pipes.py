@@ -1,5 +1,3 @@
-"""The pipes between a worker and its service, out of reach of the code that the worker runs."""
-
 import io
 import os
 import sys

@@ -1,5 +1,3 @@
-"""The compiler's messages as diagnostics at the documents' places."""
-
 import math
 import re
 

@@ -1,5 +1,3 @@
-"""The planning budget of a mission, and the seed of each decision."""
-
 from __future__ import annotations
 
 import msgspec

@@ -1,5 +1,3 @@
-"""The layout of a model's state: what tells whether a variable is the same in another model."""
-
 from __future__ import annotations
 
 import json

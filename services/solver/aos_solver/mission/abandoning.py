@@ -1,5 +1,3 @@
-"""Work whose result is not needed any more, given up while it goes on."""
-
 import asyncio
 from collections.abc import Coroutine
 from contextlib import suppress

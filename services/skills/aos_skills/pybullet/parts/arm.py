@@ -1,5 +1,3 @@
-"""The Panda arm, moved joint by joint or by the point between its finger tips."""
-
 import itertools
 import math
 from collections.abc import Callable

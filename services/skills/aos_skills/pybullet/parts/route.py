@@ -1,5 +1,3 @@
-"""Ways on a floor map: A* over a grid whose cells cost more near obstacles, then pulled straight."""
-
 from __future__ import annotations
 
 import math

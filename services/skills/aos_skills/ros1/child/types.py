@@ -1,5 +1,3 @@
-"""Message classes of ROS 1, installed or made from the user's files. Values are dicts of fields."""
-
 from __future__ import annotations
 
 import tempfile

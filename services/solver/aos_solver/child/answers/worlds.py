@@ -1,5 +1,3 @@
-"""The answers of an engine child about simulated worlds and samples of steps, as typed data."""
-
 import msgspec
 
 

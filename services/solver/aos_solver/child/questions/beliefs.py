@@ -1,5 +1,3 @@
-"""The questions about what is believed, and the observations that change it."""
-
 import logging
 from collections.abc import Mapping
 from typing import Any

@@ -1,5 +1,3 @@
-"""The questions by which an engine of other documents takes a mission over."""
-
 from collections.abc import Iterator
 
 import msgspec

@@ -1,5 +1,3 @@
-"""The lengths that the vectors of a state can have: read off what the documents assign to them."""
-
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping

@@ -1,5 +1,3 @@
-"""Document code: which copies of the state each section sees and changes, and its functions."""
-
 import copy
 import re
 from collections.abc import Iterable, Iterator, Mapping

@@ -1,5 +1,3 @@
-"""The check that the documents' names can be names in C++."""
-
 from collections.abc import Iterator
 
 from aos_language.cpp.keywords import CPP_KEYWORDS

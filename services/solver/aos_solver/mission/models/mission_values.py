@@ -1,5 +1,3 @@
-"""The values of mission parameters in each model of a mission: those that it began with stay."""
-
 from collections.abc import Mapping
 
 import msgspec

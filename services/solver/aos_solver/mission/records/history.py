@@ -1,5 +1,3 @@
-"""The decision records of a mission, page by page out of its journal."""
-
 import asyncio
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor

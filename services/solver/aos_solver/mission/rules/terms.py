@@ -1,5 +1,3 @@
-"""The terms that a mission is run on."""
-
 import msgspec
 
 from aos_solver.child.search import Search
