@@ -30,7 +30,7 @@ def tree_of(text: str, mode: str) -> ast.AST:
         return ast.parse(text, mode=mode)
 
 
-def place_in(snippet: Snippet, node: ast.expr | ast.stmt) -> Span:
+def place_in(snippet: Snippet, node: ast.expr | ast.stmt | ast.excepthandler) -> Span:
     """The document place of a node of the snippet's tree."""
     return place_of_byte(snippet, node.lineno, node.col_offset)
 
@@ -62,3 +62,20 @@ def names_bound_by(node: ast.AST) -> tuple[str, ...]:
             return (name,)
         case _:
             return ()
+
+
+def always_returns(statements: list[ast.stmt]) -> bool:
+    """Returns whether control leaves statements by `return` or `raise`, and never at their end."""
+    if not statements:
+        return False
+    match statements[-1]:
+        case ast.Return() | ast.Raise():
+            return True
+        case ast.If(body=body, orelse=orelse):
+            return always_returns(body) and always_returns(orelse)
+        case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=final):
+            return always_returns(final) or (
+                always_returns(orelse or body) and all(always_returns(handler.body) for handler in handlers)
+            )
+        case _:
+            return False

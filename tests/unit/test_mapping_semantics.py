@@ -236,6 +236,21 @@ def test_what_one_activation_does_to_a_constant_does_not_reach_the_next():
             assert fields(mapping, {"goal": "___door"}) == {"x": 2}
 
 
+def test_a_part_of_a_constant_that_cannot_be_copied_is_shared_and_the_rest_is_not():
+    span = Span("environment.json", 1, 1)
+    code = "import threading as t\n___door.lock = {1: [t.Lock()]}\n___door.loop = ___door\n___door.x = 1"
+    door = LowLevelConstant("___door", "Door", Snippet(code, (span,)), span)
+    low_level = LowLevelDocument("garden", span, constants=(door,))
+    text = (
+        "parameter: same\ncode:\nid(___door.lock[1][0])\n"
+        "parameter: x\ncode:\n___door.__dict__.update(x=___door.x + 1) or ___door.loop.x\n"
+    )
+    mapping = loaded(emitted(f"{HEAD}{text}", low_level))
+    first = fields(mapping, {})
+    assert first["x"] == 2
+    assert fields(mapping, {}) == first
+
+
 def test_a_module_that_is_installed_is_used_itself():
     mapping = loaded(
         emitted(

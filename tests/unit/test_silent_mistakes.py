@@ -195,6 +195,23 @@ def test_a_result_that_is_read_before_it_is_set_is_told(mapping, place):
     assert all("is `None` here: it is set later" in one.message for one in told)
 
 
+@pytest.mark.parametrize(
+    ("code", "place"),
+    [
+        ("a = 1\ndel a", (2, 5)),
+        ("try:\n    a = 1\nexcept KeyError as a:\n    pass", (3, 1)),
+        ("del a; a = 1", None),
+        ("try:\n    a = 1\nexcept KeyError as a:\n    return 2", None),
+        ("try:\n    a = 1\nexcept KeyError as a:\n    pass\nimport math as a", None),
+    ],
+)
+def test_code_that_takes_its_own_variable_away_is_told_where_it_does(code, place):
+    mapping = ruled("a > 1", "True").replace("a = __input.a", code)
+    first = mapping[: mapping.index(code)].count("\n")
+    told = [one for one in found(skill=TWO, mapping=mapping) if one.severity is Severity.ERROR]
+    assert [(one.span.line - first, one.span.column) for one in told] == [place] * bool(place)
+
+
 def test_keys_that_no_value_of_an_enum_has_and_values_without_a_key_are_told():
     skill = SKILL.replace("int steps", "Side steps").replace("+ steps", "+ (steps == Left)")
     environment = SIDES.replace("action_parameter: int near\ncode:\nstate.near = 1;\n", "")

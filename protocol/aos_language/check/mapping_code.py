@@ -12,6 +12,7 @@ from aos_language.check.python_parsed import parsed
 from aos_language.check.result_order import check_result_order
 from aos_language.check.rule_gaps import check_rule_gaps
 from aos_language.check.scope import Scope
+from aos_language.check.taken_away import check_taken_away
 from aos_language.findings import Findings
 from aos_language.local_types import ELEMENTS, local_type
 from aos_language.python_syntax import own_scope, place_in, tree_of
@@ -166,6 +167,8 @@ def _check_variable(
     python_names.check_names(variable.code, tree, names.of_code(), findings, severity)
     check_input_fields(variable.code, tree, findings)
     _check_ends(variable, variable.code, tree, findings)
+    if isinstance(tree, ast.Module):
+        check_taken_away(variable.name, variable.code, tree, findings)
 
 
 def _check_ends(variable: LocalVariable, code: Snippet, tree: ast.AST, findings: Findings) -> None:

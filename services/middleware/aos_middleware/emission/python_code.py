@@ -14,7 +14,7 @@ from typing import Literal
 
 import msgspec
 
-from aos_language.python_syntax import module_of, names_bound_by, own_scope, tree_of
+from aos_language.python_syntax import always_returns, module_of, names_bound_by, own_scope, tree_of
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Snippet
 
@@ -80,7 +80,7 @@ def read_body(snippet: Snippet) -> PythonCode | Diagnostic:
     names = _Names(tree)
     if names.suspends:
         return _fault("`yield` and `await` have no meaning here", snippet.span)
-    if _always_returns(tree.body):
+    if always_returns(tree.body):
         returns: Literal["always", "sometimes", "never"] = "always"
     else:
         returns = "sometimes" if names.returns else "never"
@@ -207,22 +207,6 @@ def _is_plain(text: str, value: ast.expr) -> bool:
     except SyntaxError:
         return False
     return True
-
-
-def _always_returns(statements: list[ast.stmt]) -> bool:
-    if not statements:
-        return False
-    match statements[-1]:
-        case ast.Return() | ast.Raise():
-            return True
-        case ast.If(body=body, orelse=orelse):
-            return _always_returns(body) and _always_returns(orelse)
-        case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=final):
-            return _always_returns(final) or (
-                _always_returns(orelse or body) and all(_always_returns(handler.body) for handler in handlers)
-            )
-        case _:
-            return False
 
 
 class _Names:

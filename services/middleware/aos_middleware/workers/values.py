@@ -5,6 +5,7 @@ of a robot framework: `__input.pose.x`, `Point(x=1.0)`. `Message` gives the firs
 the framework's class cannot be imported, and `plain_from` turns both, and the real classes, into plain data.
 """
 
+import copy
 import math
 from collections.abc import Mapping
 from contextlib import suppress
@@ -85,6 +86,38 @@ def put(values: dict[str, Any], path: str, value: Any) -> None:
         inner = inner.get(name) if isinstance(inner, dict) else None
     if isinstance(inner, dict) and last in inner:
         inner[last] = value
+
+
+def share_what_cannot_be_copied(value: Any, shared: dict[int, Any]) -> None:
+    """Adds to `shared`, a memo of `copy.deepcopy`, the smallest parts of a value without which it can be
+    copied, such as a lock in a list."""
+    waiting, seen = [value], set()
+    while waiting:
+        part = waiting[-1]
+        if _can_be_copied(part, shared):
+            waiting.pop()
+            continue
+        seen.add(id(part))
+        if inner := [each for each in _parts(part) if id(each) not in seen]:
+            waiting += inner
+        else:
+            shared[id(waiting.pop())] = part
+
+
+def _can_be_copied(value: Any, shared: dict[int, Any]) -> bool:
+    try:
+        copy.deepcopy(value, dict(shared))
+    except Exception:
+        return False
+    return True
+
+
+def _parts(value: Any) -> list[Any]:
+    if isinstance(value, Mapping):
+        return list(value.values())
+    if isinstance(value, list | tuple | set | frozenset):
+        return list(value)
+    return list(vars(value).values()) if isinstance(value, Message) else []
 
 
 def is_truth(value: Any) -> bool:

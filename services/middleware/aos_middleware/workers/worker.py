@@ -19,7 +19,14 @@ from typing import Any
 
 from aos_middleware.workers import frames
 from aos_middleware.workers.raised import NoTruthValue, raised
-from aos_middleware.workers.values import is_truth, message_from, plain_from, put, text_of
+from aos_middleware.workers.values import (
+    is_truth,
+    message_from,
+    plain_from,
+    put,
+    share_what_cannot_be_copied,
+    text_of,
+)
 from aos_middleware.workers.worker_pipes import take_over_pipes
 from aos_protocol.spelling import shortened
 
@@ -62,6 +69,9 @@ class LoadedMapping:
             warnings.simplefilter("ignore", SyntaxWarning)
             exec(compile(load.python, load.file_name, "exec", dont_inherit=True), namespace)
         self._namespace = namespace
+        self._shared: dict[int, Any] = {}
+        with _watched(load.load_s):
+            share_what_cannot_be_copied(namespace.get("CONSTANTS", {}), self._shared)
 
     def answer(self, question: frames.Question) -> frames.Answer:
         """The answer to a question; Raised if mapping code raised."""
@@ -96,7 +106,7 @@ class LoadedMapping:
         self._has_stopped = self._holds = False
         with _watched(self._load.evaluation_s):
             # As for parameters: what mapping code does to a constant ends with the activation.
-            self._namespace.update(copy.deepcopy(self._namespace.get("CONSTANTS", {})))
+            self._namespace.update(self._copied(self._namespace.get("CONSTANTS", {})))
             named = self._with_constants(parameters)
             for path, value in low_level.items():
                 put(named, path, message_from(value))
@@ -171,8 +181,11 @@ class LoadedMapping:
         if isinstance(plain, list):
             return [self._with_constants(value) for value in plain]
         if isinstance(plain, str) and plain in constants:
-            return copy.deepcopy(constants[plain])
+            return self._copied(constants[plain])
         return plain
+
+    def _copied(self, value: Any) -> Any:
+        return copy.deepcopy(value, dict(self._shared))
 
     def _texts(self) -> dict[str, str]:
         return {name: text_of(value) for name, value in self._values.items()}
