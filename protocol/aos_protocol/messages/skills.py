@@ -48,7 +48,7 @@ class Outcome(Message, frozen=True):
 
     `monitors` are the newest responses of the project's monitors since the outcome before, by monitor: an
     observation of the state at this outcome, however the activation ended. `monitor_faults` says of a monitor
-    why its code gave none.
+    why its code gave none. `notices` are for people: what about the robot's data is odd for the first time.
     """
 
     id: ActivationId
@@ -64,6 +64,7 @@ class Outcome(Message, frozen=True):
     stopped_by: str = ""
     monitors: dict[str, str] = {}
     monitor_faults: dict[str, str] = {}
+    notices: tuple[str, ...] = ()
 
 
 class Stray(Message, frozen=True):

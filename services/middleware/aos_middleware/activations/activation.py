@@ -87,6 +87,7 @@ async def run_activation(
         stopped_by=observation.stopped_by,
         monitors=told.responses | activation.played_monitors,
         monitor_faults=told.faults,
+        notices=tuple(activation.notices),
     )
 
 
@@ -116,6 +117,7 @@ class _Activation:
         self.call = Call(request, self._mapping.activation, around, self.stop)
         self._topics = HeardTopics(request.skill, evaluator, around, self.stop)
         self.played_monitors: dict[str, str] = {}
+        self.notices: list[str] = []
 
     async def run(self) -> _Observation:
         """Calls the skill with its fields and returns what is observed."""
@@ -130,7 +132,8 @@ class _Activation:
             if not self._evaluator.emitted.handles_failures:
                 raise
             return await self._observed_failure(error)
-        self._around.odd.take_result(self._request.skill, {**result.fields, **result.numbers})
+        numbers = {**result.fields, **result.numbers}
+        self._notice(self._around.odd.take(f"the result of {self._request.skill}", numbers))
         self.played_monitors = result.monitors
         if result.response:
             return _Observation(result.response, numbers=result.numbers)
@@ -209,12 +212,17 @@ class _Activation:
                 stopping.cancel()
                 messages.close()
         if messages.dropped:
-            _log.warning("%s: %d topic messages came too fast", self._request.skill, messages.dropped)
+            self._notice([f"{self._request.skill}: {messages.dropped} topic messages came too fast"])
         if topics.fault is not None:
             raise topics.fault
         assert result is not None
-        topics.end(result)
+        self._notice(topics.notices(result))
         return result
+
+    def _notice(self, notices: list[str]) -> None:
+        for notice in notices:
+            _log.warning("%s", notice)
+        self.notices += notices
 
     @property
     def _has_missed(self) -> bool:

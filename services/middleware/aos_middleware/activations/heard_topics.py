@@ -46,6 +46,7 @@ class HeardTopics:
             around.keys.topic(variable.topic) for variable in heard if variable.initial_value is None
         }
         self._last_numbers: dict[str, int] = {}
+        self._odd: list[str] = []
         self._has_received = asyncio.Event()
 
     @property
@@ -58,6 +59,7 @@ class HeardTopics:
             await self._evaluate([(self._topic_of[key], message.fields) for key, message in batch])
             for key, message in batch:
                 self._last_numbers[key] = message.number
+                self._odd += self._around.odd.take(self._topic_of[key], message.fields)
             self._has_received.set()
 
     async def _evaluate(self, messages: list[tuple[str, dict[str, Any]]]) -> None:
@@ -95,8 +97,11 @@ class HeardTopics:
                     await self._has_received.wait()
         await self._around.monitors.catch_up(spoken, CATCH_UP_S)
 
-    def end(self, result: SkillResult) -> None:
-        """Notes which topics were silent, now that all that came has been evaluated."""
-        if not result.response:
-            own = {topic: key in self._last_numbers for key, topic in self._topic_of.items()}
-            self._around.silent.take_call(self._around.monitors.has_heard() | own, result.published)
+    def notices(self, result: SkillResult) -> list[str]:
+        """Returns what is to be told of the topics, now that all that came has been evaluated."""
+        if result.response:
+            return []
+        own = {topic: key in self._last_numbers for key, topic in self._topic_of.items()}
+        return self._odd + self._around.silent.take_call(
+            self._around.monitors.has_heard() | own, result.published
+        )

@@ -1,15 +1,12 @@
-"""Numbers in results of skills that are not finite, such as the NaN of a camera that sees nothing."""
+"""Numbers of the robot that are not finite, such as the NaN of a camera that sees nothing."""
 
-import logging
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-_log = logging.getLogger("aos.middleware")
-
 
 class OddNumbers:
-    """Tells once of each field of a skill's results that was NaN or infinite, in the log.
+    """Tells once of each field of results and messages that was NaN or infinite.
 
     Lists are left out: ranges of a scanner are infinite where nothing is in reach.
     """
@@ -17,13 +14,15 @@ class OddNumbers:
     def __init__(self) -> None:
         self._told: set[tuple[str, str]] = set()
 
-    def take_result(self, skill: str, fields: Mapping[str, Any]) -> None:
-        """A skill has ended with these."""
+    def take(self, what: str, fields: Mapping[str, Any]) -> list[str]:
+        """Returns what is to be told of these fields; `what` says of what they are."""
+        notices = []
         for field, number in _not_finite(fields):
-            if (skill, field) not in self._told:
-                self._told.add((skill, field))
+            if (what, field) not in self._told:
+                self._told.add((what, field))
                 hint = "NaN compares as false in rules: tell it apart in a first rule, as by `x != x`"
-                _log.warning("%s: %s of its result is %s, no finite number. %s", skill, field, number, hint)
+                notices.append(f"{field} of {what} is {number}, no finite number. {hint}")
+        return notices
 
 
 def _not_finite(fields: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, float]]:

@@ -1,6 +1,5 @@
 """Topics that mappings read and on which nothing has ever come, such as those whose name is misspelt."""
 
-import logging
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
@@ -9,11 +8,9 @@ from aos_protocol.spelling import did_you_mean
 CALLS = 3
 """A topic that was silent during this many calls of skills is told."""
 
-_log = logging.getLogger("aos.middleware")
-
 
 class SilentTopics:
-    """Counts the calls during which a topic was silent, and tells each one once, in the log.
+    """Counts the calls during which a topic was silent, and tells each one once.
 
     A mapping with an initial value goes on without a message: nothing else tells that none comes.
     """
@@ -22,11 +19,12 @@ class SilentTopics:
         self._calls: Counter[str] = Counter()
         self._heard: set[str] = set()
 
-    def take_call(self, has_heard: Mapping[str, bool], sent: Iterable[str]) -> None:
-        """A call has ended; of each topic that was listened to, whether a message has come on it.
+    def take_call(self, has_heard: Mapping[str, bool], sent: Iterable[str]) -> list[str]:
+        """Returns what is to be told after a call: of each topic, whether a message has come on it.
 
         `sent` are the topics on which adapters have sent something.
         """
+        notices = []
         self._heard |= {topic for topic, is_heard in has_heard.items() if is_heard}
         for topic in has_heard.keys() - self._heard:
             self._calls[topic] += 1
@@ -35,4 +33,5 @@ class SilentTopics:
                 is_sent = f"/{topic.strip('/')}" in known
                 unsent = did_you_mean(topic, known) or "No adapter has sent on it"
                 hint = "They come between calls" if is_sent else unsent
-                _log.warning("no message has come on %s in %d calls of skills. %s", topic, CALLS, hint)
+                notices.append(f"no message has come on {topic} in {CALLS} calls of skills. {hint}")
+        return notices

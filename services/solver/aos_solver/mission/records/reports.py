@@ -84,7 +84,7 @@ class Reports:
     ) -> messages.DecisionRecord:
         """Reports the outcome of a decision, and the belief after it; the `remark` is for people."""
         alarms = [text_of(alarm) for alarm in drift if alarm.is_new]
-        remarks = (update.remark, remark, *_faults_of_monitors(outcome), *alarms)
+        remarks = (update.remark, remark, *_faults_of_monitors(outcome), *outcome.notices, *alarms)
         record = msgspec.structs.replace(
             decision,
             sequence=self._sequence,
