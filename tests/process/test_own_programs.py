@@ -61,6 +61,8 @@ async def test_the_adapters_start_when_the_programs_are_ready_and_stop_before_th
         await system.until("skills", "ready")
     assert system.order("ready").index("nav") < system.order("ready").index("robot")
     assert system.order("starting")[0] == "router"
+    told = [(event.service, event.state) for event in system.events]
+    assert told.index(("router", "ready")) < told.index(("nav", "starting"))
     assert system.order("starting").count("robot") == 1
     stopping = system.order("stopping")
     assert stopping.index("robot") < stopping.index("nav") < stopping.index("registry")

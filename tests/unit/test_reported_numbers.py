@@ -1,3 +1,5 @@
+import math
+
 import pytest
 from mappings import mapping_text
 from projects import text_project
@@ -5,7 +7,7 @@ from scripted_models import json_text, lowered
 
 from aos_language.cpp.snippets import read_cpp
 from aos_language.observed import misuses_of, reported_numbers, reports_in
-from aos_middleware.activations.observed_numbers import observed_numbers
+from aos_middleware.activations.observed_numbers import numbers_among, observed_numbers
 from aos_middleware.emission.emit import emit_mapping
 from aos_solver.child.lines.observed_numbers import numbers_by_name, numbers_field
 from aos_solver.emission.lowering.relevance import irrelevant_variables
@@ -125,6 +127,7 @@ def test_numbers_are_taken_from_local_variables_that_hold_some():
     assert observed_numbers([*texts, "unknown"], texts) == {
         "depth": 1.5, "level": 3, "loud": True, "echoes": [1.0, None, 2],
     }  # fmt: skip
+    assert numbers_among({"depth": "deep", "level": 3, "echoes": ["a"], "nan": math.nan}) == {"level": 3}
 
 
 def test_numbers_go_to_an_engine_and_come_back_by_name():

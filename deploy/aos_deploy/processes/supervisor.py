@@ -169,12 +169,14 @@ class Supervisor:
         self._beside(self._follow_presence(self.bus))
 
     async def _start_in_order(self, programs: list[Program]) -> None:
-        """Each program of the user's own when those before it are ready, then the adapters."""
+        """Each program of the user's own when those before it are ready, then the adapters.
+
+        Any of them may connect to the bus at once.
+        """
+        await self._running[ROUTER.name].ready.wait()
         for program in sorted(programs, key=lambda program: not program.is_own):
             if program.is_own:
                 await check_port_is_free(program.name, program.ready)
-            else:
-                await self._running[ROUTER.name].ready.wait()
             await self._spawn(program)
             if program.is_own:
                 await self._running[program.name].ready.wait()

@@ -13,7 +13,7 @@ import msgspec
 
 from aos_middleware.activations.heard_topics import QUEUE_SIZE, HeardTopics
 from aos_middleware.activations.no_response import no_response
-from aos_middleware.activations.observed_numbers import observed_numbers
+from aos_middleware.activations.observed_numbers import numbers_among, observed_numbers
 from aos_middleware.activations.skill_call import Call
 from aos_middleware.activations.surroundings import Surroundings
 from aos_middleware.mappings.low_level import assigned_variables
@@ -136,7 +136,7 @@ class _Activation:
         self._notice(self._around.odd.take(f"the result of {self._request.skill}", numbers))
         self.played_monitors = result.monitors
         if result.response:
-            return _Observation(result.response, numbers=result.numbers)
+            return _Observation(result.response, numbers=numbers_among(result.numbers))
         if self._has_missed and self._topics.keys:
             raise self._missed_topics()
         observed = await self._evaluator.finish(result.fields)

@@ -14,7 +14,11 @@ def observed_numbers(names: Iterable[str], local_variables: Mapping[str, str]) -
 
     A local variable that is none of these, as text in `local_variables`, was not observed.
     """
-    values = {name: _decoded(local_variables.get(name, "null")) for name in names}
+    return numbers_among({name: _decoded(local_variables.get(name, "null")) for name in names})
+
+
+def numbers_among(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns what counts as observed of what a program of the robot's may give as numbers."""
     return {name: value for name, value in values.items() if _is_number(value) or _is_list(value)}
 
 
