@@ -21,7 +21,7 @@ response_rule: __skill_status == 'failed' and 'jam' in __skill_error
 response: late
 response_rule: __skill_status == 'timed_out'
 response: done
-response_rule: __skill_status == 'succeeded'
+response_rule: True
 module_activation: skill
 path: /sense
 max_duration: 0.3
@@ -44,7 +44,7 @@ async def test_a_rule_can_tell_how_a_skill_has_ended(system: System):
     await system.adapter.serve("/sense", ending)
     await system.adapter.serve_cancel("/sense")
     outcomes = [await system.activate("sense", step) for step in (1, 2, 3, 4)]
-    # No rule tells of the second.
+    # No rule that names the status tells of the second.
     assert [each.response for each in outcomes] == ["jammed", "", "late", "done"]
     faults = [each.fault for each in outcomes[:2]]
     assert [each.status for each in outcomes[:2]] == ["observed", "failed"]

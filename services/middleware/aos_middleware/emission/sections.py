@@ -15,6 +15,9 @@ from aos_protocol.documents import AbstractionMapping, LocalSource, LocalVariabl
 _OF_SKILL = ("__skill_status", "__skill_error")
 """The names by which rules read how a skill has failed."""
 
+_HAS_ENDED = "__skill_has_ended"
+"""True where a skill has not failed: the rules without the names above hold only then."""
+
 
 class Function(msgspec.Struct, frozen=True):
     """A generated function: its name, its arguments as text, its docstring and its body."""
@@ -152,6 +155,8 @@ class Sections:
             None if rule.condition is None else self._snippets.expression(rule.condition)
             for rule in mapping.rules
         ]
+        read = frozenset[str]().union(*(code.reads for code in conditions if code is not None))
+        of_skill = [name for name in _OF_SKILL if name in read]
         lines: list[str] = []
         codes: list[PythonCode] = []
         has_assignments = False
@@ -161,10 +166,15 @@ class Sections:
                 for assignment in rule.assignments
                 if (value := self._snippets.expression(assignment.value))
             ]
-            is_last = code is None or code.is_true
-            if code is not None and not is_last:
+            holds_always = code is None or code.is_true
+            is_for_ended = bool(of_skill) and (code is None or code.reads.isdisjoint(_OF_SKILL))
+            is_last = holds_always and not is_for_ended
+            if code is not None and not holds_always:
                 codes.append(code)
-                lines += self._snippets.marks.expression("if ", code, ":", 1)
+                before, after = (f"if {_HAS_ENDED} and (", "):") if is_for_ended else ("if ", ":")
+                lines += self._snippets.marks.expression(before, code, after, 1)
+            elif is_for_ended:
+                lines.append(f"    if {_HAS_ENDED}:")
             depth = 1 if is_last else 2
             for assignment, value in assigned:
                 codes.append(value)
@@ -173,15 +183,14 @@ class Sections:
                     f"__assign({literal(assignment.path)}, ", value, ")", depth
                 )
             lines.append(f"{' ' * 4 * depth}return {literal(rule.response)}")
-            if is_last:
+            if holds_always:
                 break
-        else:
+        if not is_last:
             lines.append("    return None")
         summary = "The response: that of the first rule that holds."
         reads = self._snippets.read_by(codes)
-        of_skill = [name for name in _OF_SKILL if any(name in code.reads for code in codes)]
         self.handles_failures = bool(of_skill)
-        reads += of_skill
+        reads += [*of_skill, *([_HAS_ENDED] if any(_HAS_ENDED in line for line in lines) else [])]
         return Function(
             "observe", ", ".join(["__assign", *reads] if has_assignments else reads), summary, tuple(lines)
         )

@@ -21,13 +21,15 @@ def there_from_response(__input, there):
     return there
 
 
-def observe(there, __skill_status):
+def observe(there, __skill_status, __skill_has_ended):
     """The response: that of the first rule that holds."""
     if __skill_status == 'stopped':
         return "halted"
-    if there:
+    if __skill_has_ended and (there):
         return "arrived"
-    return "halted"
+    if __skill_has_ended:
+        return "halted"
+    return None
 
 
 RESPONSE = {
