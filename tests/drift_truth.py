@@ -58,7 +58,6 @@ def alarm_of(
 
 
 def silent(seed: int, skills: Mapping[str, Odds], uses: int) -> bool:
-    """Says whether a run stays silent whose skills do what the model says, with odds that differ by use."""
     draw = random.Random(seed)
     tests = begun("d", {skill: [*odds] for skill, odds in skills.items()})
     for _ in range(uses):

@@ -221,7 +221,6 @@ def copied_past(shared: Path, folder: Path) -> Path:
 
 
 def write_slow_tiger(folder: Path) -> None:
-    """Writes the bundle `tiger`, whose skills may take as long as a test wants them to."""
     (folder / "tiger").mkdir(exist_ok=True)
     for path in (BUNDLES / "bench/tiger").iterdir():
         text = path.read_text().replace("max_duration: 10\n", "max_duration: 900\n")

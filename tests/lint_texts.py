@@ -56,7 +56,6 @@ action_parameter: steps
 
 
 def skill_after(code: str) -> str:
-    """The skill, whose step begins with the code."""
     return SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")
 
 

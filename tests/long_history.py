@@ -81,7 +81,6 @@ def measure(count: int) -> None:
 
 
 async def answer(endpoint: str, journal: str) -> None:
-    """Answers as the solver does, until its input ends."""
     ended = MissionState(MISSION, "ended", 0, 0.0, ending="step_limit", epoch=1)
 
     async def history(query: HistoryQuery, _: str) -> History:

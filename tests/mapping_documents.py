@@ -8,7 +8,6 @@ from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill, 
 
 
 def mapping_of(text: str, file: str = "look.am") -> AbstractionMapping:
-    """The mapping in a document's text, which is not checked further."""
     findings = Findings()
     documents = read_documents({file: dedent(text).encode()}, findings)
     mapping = documents[file].content

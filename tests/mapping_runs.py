@@ -32,7 +32,6 @@ def loaded(mapping: EmittedMapping, allowed_imports: tuple[str, ...] | None = No
 
 
 def fields(mapping: LoadedMapping, parameters: dict[str, Any]) -> dict[str, Any]:
-    """The fields of the call, for an activation that begins with these parameters."""
     answer = mapping.answer(Begin(parameters))
     assert isinstance(answer, Begun), answer
     return answer.fields

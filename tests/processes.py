@@ -33,7 +33,6 @@ def is_running(pid: int) -> bool:
 
 
 def descendants(pid: int) -> list[int]:
-    """All processes below a process, whatever their group and session."""
     below: list[int] = []
     for task in Path(f"/proc/{pid}/task").iterdir():
         children: list[str] = []
@@ -100,7 +99,6 @@ def until_taking_over(run: Path, revision: int) -> None:
 
 
 def events_of(process: subprocess.Popen[str]) -> Iterator[dict[str, Any]]:
-    """The events that `aos-up --json` prints."""
     assert process.stdout is not None
     for line in process.stdout:
         yield json.loads(line)

@@ -19,7 +19,6 @@ PATIENCE_S = 120.0
 
 
 def main() -> None:
-    """Calls, listens, prints, ends."""
     die_with_parent()
     router: dict[str, Any] = {"router_ip": "127.0.0.1", "router_port": int(sys.argv[1]), "domain_id": 0}
     joints: list[int] = []

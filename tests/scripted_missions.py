@@ -45,7 +45,6 @@ class Surroundings(QuietPorts):
 
     @property
     def outcomes(self) -> Sequence[DecisionRecord]:
-        """The records of what came of them."""
         return [record for record in self.records if record.outcome is not None]
 
     def journal(self, kind: str, payload: Message) -> None:

@@ -52,7 +52,6 @@ class ScriptedModel(msgspec.Struct, frozen=True):
     executable: Path
 
     def play(self, *actions: str, initial: str = "") -> Played:
-        """Runs actions, each with its draws after a `|`, from an initial state with these draws."""
         answer = self._run("play", script="\n".join([initial, *actions]) + "\n")
         assert isinstance(answer, list), answer
         return Played(answer[0], answer[1:])
@@ -63,7 +62,6 @@ class ScriptedModel(msgspec.Struct, frozen=True):
         return answer
 
     def describe(self) -> dict[str, Any]:
-        """The grounded actions in their order, with their parameters."""
         return {action["action"]: action["parameters"] for action in self._run("describe")}
 
     def walk(self, steps: int) -> dict[str, Any]:
@@ -84,7 +82,6 @@ class ScriptedModel(msgspec.Struct, frozen=True):
 
 
 def json_text(document: Mapping[str, Any], kind: str, name: str, project: str = "test") -> str:
-    """A v1.x JSON document with its header."""
     header = {"Project": project, "Name": name, "Type": kind, "Version": 1}
     return json.dumps({"PlpMain": header, **document}, indent=2)
 

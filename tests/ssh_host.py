@@ -57,7 +57,6 @@ def stand_in(folder: Path) -> str:
 
 
 def slow_stand_in(folder: Path) -> str:
-    """A stand-in that tells its configuration only after the record of the run was written once more."""
     slow = """
 import pathlib, time
 
@@ -80,7 +79,6 @@ def refusing_ssh(folder: Path, text: str) -> str:
 
 @contextmanager
 def ssh_server(folder: Path) -> Iterator[str]:
-    """A folder for the PATH with an `ssh` that reaches a real server on this machine as `robot@arm`."""
     sshd = shutil.which("sshd", path=f"{os.environ['PATH']}:/usr/sbin")
     ssh = shutil.which("ssh")
     assert sshd is not None

@@ -76,7 +76,6 @@ def wrong_robots() -> tuple[Wrong, ...]:
 
 @cache
 def _missions(name: str, plans: tuple[str, ...]) -> ModelMissions:
-    """Those of a part, whose documents its claims share, or of a planner that is wrong about its world."""
     wrong = next(wrong for wrong in wrong_robots() if wrong.name == name)
     with tempfile.TemporaryDirectory() as out:
         own = deployment_of(msgspec.structs.replace(wrong.part, by="model"), wrong.folder, Path(out))
@@ -88,7 +87,6 @@ def _missions(name: str, plans: tuple[str, ...]) -> ModelMissions:
 
 
 async def tried_by_model(wrong: Wrong) -> Verdict:
-    """The verdict on missions in the world of the documents."""
     robot = wrong.robot
     assert robot is not None
     player = await ModelPlayer.prepared(_missions(wrong.name, robot.plans))
@@ -103,7 +101,6 @@ async def tried_by_model(wrong: Wrong) -> Verdict:
 
 
 async def _scripted(engine: Engine, robot: WrongRobot, seed: int) -> Trial:
-    """The robot's actions in the model's world, until that ends."""
     indices = {action.name: index for index, action in enumerate(engine.description.actions)}
     ending = (await engine.reset_world(seed)).ending
     responses: list[str] = []
@@ -127,7 +124,6 @@ async def _scripted(engine: Engine, robot: WrongRobot, seed: int) -> Trial:
 
 
 async def tried_in_physics(wrong: Wrong, out: Path) -> Verdict:
-    """The verdict on a mission in the simulated world."""
     assert wrong.robot is not None
     robot = wrong.robot.system or wrong.robot
     setting = msgspec.structs.replace(wrong.part, by="system", faults=robot.faults)

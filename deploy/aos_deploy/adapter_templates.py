@@ -103,7 +103,6 @@ def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: 
 
 
 def _interfaces(project: Project) -> str:
-    """Writes which interface files the documents ask for."""
     known = documented(project)
     lines = ["# The robot's own interfaces", ""]
     lines += ["Copy here, from the robot's workspace, what is not common to all of ROS:", ""]

@@ -78,7 +78,6 @@ def assemble(
 
 
 def _with_types_first(model: SkillModel, types: Set[str], findings: Findings) -> SkillModel:
-    """The skill with each parameter whose name stands before its type told, and read as meant."""
     parameters = []
     for each in model.parameters:
         if each.name in types and each.type.isidentifier() and each.type not in types:

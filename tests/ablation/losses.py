@@ -22,7 +22,6 @@ class Losses:
             self._regrets[entry["planner"]][model] = entry["regret"]
 
     def rows(self) -> list[dict[str, Any]]:
-        """Returns a row for each mechanism of each route, in percent, with the family that loses most."""
         return [self._row(route, name) for route in self._routes for name in route.mechanisms if self.models]
 
     def _row(self, route: Route, mechanism: str) -> dict[str, Any]:

@@ -36,7 +36,6 @@ _ENDED_S = 15.0
 
 
 def killed_run(folder: Path) -> Path:
-    """The run of a mission whose aos-up was killed after some decisions."""
     write_deploy_file(folder, 1, 10 * DECISIONS)
     up = Up(folder, "tester.yaml")
     for _ in range(DECISIONS):

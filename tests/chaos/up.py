@@ -158,7 +158,6 @@ class Up:
             pass
 
     def until_decision(self) -> bool:
-        """Returns whether another decision comes."""
         while (event := self.next()) is not None:
             if event["event"] == "decision":
                 return True

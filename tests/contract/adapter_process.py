@@ -49,7 +49,6 @@ class AdapterProcess:
         return await self.bus.ask(self.keys.call(call.path), call, SkillResult, timeout_s=HANG_S)
 
     async def refusal(self, *call: Any, **how: Any) -> AosError:
-        """The error of a call, which has the arguments of the robot's `call`."""
         with pytest.raises(AosError) as error:
             await self.call(*call, **how)
         return error.value

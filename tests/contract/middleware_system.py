@@ -126,7 +126,6 @@ class Adapter:
         return self._keys.serve(Serving(adapter, "1", self.instance, path))
 
     async def serve_cancel(self, path: str, is_still: asyncio.Event | None = None):
-        """Answers cancellations, once the robot stands still."""
 
         async def cancel(request: messages.Cancel, _: str) -> messages.Cancelled:
             self.cancelled.append(request.reason)
@@ -287,7 +286,6 @@ async def running_system(
     is_process: bool = False,
     **settings: Any,
 ) -> AsyncIterator[System]:
-    """A middleware that has taken over the bundle's project and `SENSE`, and ends with the block."""
     project = bundle_project(bundle)
     sense = skill_of(SENSE, "sense.am")
     project = msgspec.structs.replace(project, skills=(*project.skills, sense))

@@ -94,7 +94,6 @@ def zip_of(files: dict[str, bytes], chance: random.Random) -> bytes:
 
 
 def hostile_archive(files: dict[str, bytes], chance: random.Random) -> tuple[str, bytes]:
-    """The name and bytes of an archive with hostile members, or of one that was damaged afterwards."""
     chosen = {hostile_name(name, chance): data for name, data in files.items()}
     form = chance.choice(("tar", "tar.gz", "zip", "tar.xz"))
     if form == "zip":

@@ -36,7 +36,6 @@ async def push_on(bus: Bus, keys: Keys, pick: bytes, accepted: Accepted):
 
 
 def stored_revisions(path: Path) -> list[Revision]:
-    """All revisions of the project as a catalogue finds them that is opened anew."""
     catalogue = Catalogue.open(path)
     found = [catalogue.revision("armadillo", entry.revision) for entry in catalogue.history("armadillo")]
     catalogue.close()

@@ -67,7 +67,6 @@ def codes(report: messages.BundleReport) -> set[str]:
 
 
 def drop(registry: Path, name: str, files: dict[str, bytes]):
-    """Puts a folder into the watched folder, at once."""
     folder = registry / name
     folder.mkdir()
     for file, data in files.items():

@@ -20,7 +20,6 @@ class Answers:
     crashes: list[str] = dataclasses.field(default_factory=list, kw_only=True)
 
     def has_crashed(self, problem: Problem, answer: dict[str, Any], wanted: str) -> bool:
-        """Returns whether the answer lacks what was wanted, and notes the problem then."""
         if wanted in answer:
             return False
         self.crashes.append(problem.name)

@@ -59,7 +59,6 @@ class Cost(msgspec.Struct, frozen=True):
 
 
 async def costs_of(built: BuiltModel, simulations: int, decisions: int, seed: int) -> list[Cost]:
-    """One cost for each planner, on the beliefs of the mission that POMCP plays."""
     script: list[tuple[str, str, dict[str, Any]]] = []
     costs = []
     for planner in PLANNERS:

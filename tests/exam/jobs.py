@@ -135,7 +135,6 @@ def _worker(source: random.Random, name: str, stage: int, *, finds: bool) -> _Sk
 
 
 def _stage_sensor(source: random.Random, name: str, stages: int) -> _Skill:
-    """Tells how many stages are behind."""
     accuracy = source.choice((0.8, 0.9, 0.97))
     responses = [f"stage_{stage}" for stage in range(stages + 1)]
     lines = [
@@ -174,7 +173,6 @@ def _skill(lines: Sequence[str], parameter: str) -> str:
 
 
 def _mapping(skill: _Skill) -> str:
-    """The result's `said` is the response, also the one that no model gives."""
     sections = ["project: job"]
     sections += [
         f'response: {name}\nresponse_rule: said == "{name}"' for name in (*skill.responses, "never_said")

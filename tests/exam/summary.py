@@ -29,7 +29,6 @@ class Bounds(Answers):
     planners: Counter[str] = dataclasses.field(default_factory=Counter)
 
     def add(self, problem: Problem, answer: dict[str, Any]) -> bool:
-        """Returns whether a claim was false, or the engine failed."""
         self.models += 1
         if self.has_crashed(problem, answer, "claims"):
             return True

@@ -182,7 +182,6 @@ def pushing(random: Random, large: bool) -> World:
 
 
 def late(random: Random, large: bool) -> World:
-    """A colour, seen or chosen at the beginning, that matters only at the far end of the way."""
     cells = random.randint(8, 30) if large else random.randint(2, 7)
     colours = random.randint(2, 3)
     is_painted = random.random() < 0.5  # the robot may change it, at the beginning only

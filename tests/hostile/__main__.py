@@ -22,7 +22,6 @@ from aos_runtime.sandbox.support import sandbox_text
 
 
 def main() -> int:
-    """Exit code 0 where every attempt was kept from what it reached for, and told."""
     options = _options()
     adopt_orphans()
     import_commands()

@@ -19,7 +19,6 @@ _AARCH64 = (
 
 
 def system_call(name: str, *arguments: str | int, result: str = "reached") -> str:
-    """Statements that declare `result` and call the system with up to three arguments."""
     machine = os.uname().machine
     first, second, third = (str(word) for word in (*arguments, 0, 0, 0)[:3])
     text = _X86_64 if machine == "x86_64" else _AARCH64

@@ -40,7 +40,6 @@ _HARMLESS = "value = 1"
 
 
 def hostile_skills() -> dict[str, str]:
-    """The name of a skill for each hostile mapping, and the mapping's name."""
     return {f"{HOSTILE}{number}": name for number, name in enumerate(MAPPINGS)}
 
 

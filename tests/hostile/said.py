@@ -35,7 +35,6 @@ _END_S = 240.0
 
 
 def import_commands():
-    """Imports what the commands import when they are called."""
     for name in _IMPORTED:
         import_module(name)
 

@@ -124,7 +124,6 @@ def is_possible() -> bool:
 
 
 def main() -> int:
-    """Exit code 0 where both missions went as the unit says."""
     if not is_possible():
         print("needs systemd, unshare and nsenter, and to be root")
         return 0

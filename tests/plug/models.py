@@ -24,7 +24,6 @@ DEFAULT = "DefaultObservation"
 
 
 def small_problems(count: int, seed: int) -> Iterator[Problem]:
-    """So many problems of the exam, the families in turn."""
     found = 0
     while found < count:
         name = f"{list(FAMILIES)[seed % len(FAMILIES)]}/{seed}"
@@ -65,7 +64,6 @@ def responses_of(problem: Problem) -> list[int]:
 def documents(
     problem: Problem, weather: Weather | None, without: frozenset[int] = frozenset()
 ) -> dict[str, str]:
-    """The bundle, with the weather if it is given, and without the actions of these numbers."""
     files = {"world.ef": _environment(problem, weather)}
     names = [f"r{response}" for response in responses_of(problem)]
     for action in range(len(problem.world.actions)):
@@ -176,7 +174,6 @@ def _listed(values: Iterable[object]) -> str:
 
 
 def initial(problem: Problem, weather: Weather) -> Belief:
-    """The initial belief of the newer documents."""
     return {
         (state, kind): odds * share
         for state, odds in problem.starts

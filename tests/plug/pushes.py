@@ -150,7 +150,6 @@ class _Game:
                 self._mapped.append(state.revisions)
 
     async def _push(self, change: Change, superseded: float):
-        """Pushes at a random moment, and waits until a decision uses it, but not always."""
         await self._steps(self._chance.randint(0, 3))
         await self._until(self._chance.uniform(0.0, _STEPS_S))
         pushed = Pushed(change.kind)
@@ -219,7 +218,6 @@ class _Game:
 
 
 def between(records: Sequence[DecisionRecord]) -> list[float]:
-    """The times from an outcome to the next decision, without the search."""
     found = []
     for before, after in itertools.pairwise(records):
         if before.outcome is not None and after.outcome is None:

@@ -54,7 +54,6 @@ async def examined_problems(count: int, seed: int) -> AsyncIterator[Examined]:
 
 
 async def examined(problem: Problem) -> Examined:
-    """Plays a random past, and lets documents with the weather take over by each way."""
     source = random.Random(f"plug/{problem.name}")
     weather = Weather(source)
     # Where there are several actions the newer documents may lack the last one.

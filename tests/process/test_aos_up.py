@@ -138,7 +138,6 @@ class Mission(NamedTuple):
 
 @pytest.fixture(scope="module")
 def mission(deploy_file: Path) -> Mission:
-    """One whole mission, followed by two programs that join after its first decision."""
     with up(deploy_file) as running:
         running.until("decision")
         run = latest(deploy_file)

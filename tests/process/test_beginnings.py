@@ -58,7 +58,6 @@ __reward = -1;
 
 
 async def distribution(engine: Engine) -> dict[str, float]:
-    """The states of the belief as text, the flags of special states among it, with their weights."""
     belief = await engine.export_belief()
     assert belief.error_bound == 0
     return {state: weight for weight, state in belief.particles}

@@ -111,7 +111,6 @@ for (int i = 0; i < {count}; i++) state.{name}[i] = AOS.Bernoulli({odds});
 
 
 def looking_at_one(project: str, count: int, condition: str) -> str:
-    """A skill that answers whether the condition holds of its parameter, `number`."""
     return f"""project: {project}
 parameter: int number
 
@@ -194,7 +193,6 @@ async def turn(engine: Engine, card: int, hand: list[bool]) -> BeliefUpdate:
 
 
 async def turn_and_look(engine: Engine, card: int, hand: list[bool]):
-    """Turns a card and holds the belief in it against what was seen."""
     update = await turn(engine, card, hand)
     marginals = {marginal.variable: marginal.values for marginal in update.summary.marginals}
     assert marginals[f"cards[{card}]"].get("true" if hand[card] else "false", 0.0) > 0.9, card

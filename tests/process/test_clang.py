@@ -70,7 +70,6 @@ def compile_model(project: Project, compiler: Compiler, cache_dir: Path):
 
 
 def once(parts: list[str], compiler: Compiler, cache_dir: Path, make: Callable[[Path], None]):
-    """Compiles what these parts, this compiler and the engine's headers have not compiled yet."""
 
     async def in_folder(folder: Path):
         make(folder)

@@ -117,7 +117,6 @@ EXACT: dict[str, tuple[str, dict[int, Fraction]]] = {
 
 
 def nested(seed: int) -> tuple[str, dict[int, Fraction]]:
-    """Loops in loops whose draws depend on one another and on the state, and where they end."""
     text, odds_of = loop_program(seed, loops=1, depth=2)
     mixed: dict[int, Fraction] = {}
     for side, share in SIDES.items():

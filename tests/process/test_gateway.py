@@ -21,7 +21,6 @@ ERRAND = "deploy/bundles/errand"
 
 
 def archive(folder: Path, **changed: str) -> bytes:
-    """A bundle as a zip file, some documents with another text."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w") as file:
         for path in sorted(folder.iterdir()):

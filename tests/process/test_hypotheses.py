@@ -116,7 +116,6 @@ async def test_what_only_the_cautious_belief_explains_is_believed(lamps: Engine)
 
 
 async def believed(engine: Engine) -> list[BeliefSummary]:
-    """Returns the beliefs that the engine is led to, whatever it has beside its belief."""
     summaries = [await engine.summary()]
     summaries.append((await engine.update("see", "light")).summary)
     summaries.append(await lost(engine, "red"))

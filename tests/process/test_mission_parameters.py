@@ -32,7 +32,6 @@ async def exact_values(engine: Engine) -> dict[str, float]:
 
 
 def with_constant(bundle: Path, person: str) -> dict[str, str]:
-    """The bundle with the value written into its documents, in place of the parameter."""
     files = {}
     for path in sorted(bundle.iterdir()):
         text = path.read_text().replace("mission_parameter: Person target\ndefault_value: alice\n", "")

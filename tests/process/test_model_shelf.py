@@ -34,7 +34,6 @@ LIGHT = Evidence("look", "look", "light")
 
 
 def lamp(revision: int) -> ProjectRevision:
-    """Documents that differ in a cost, so that each revision is a model of its own."""
     files = {name: text.replace("COST", str(revision)).encode() for name, text in LAMP.items()}
     return ProjectRevision(revision, "", files_project(files))
 

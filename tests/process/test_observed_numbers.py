@@ -57,7 +57,6 @@ def normal(value: float, mean: float, deviation: float) -> float:
 
 
 def posterior(prior: Mapping[int, float], likelihood: Mapping[int, float]) -> tuple[dict[int, float], float]:
-    """Bayes' rule, and the density of what was observed."""
     joint = {level: probability * likelihood[level] for level, probability in prior.items()}
     density = sum(joint.values())
     return {level: weight / density for level, weight in joint.items()}, density

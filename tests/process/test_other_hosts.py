@@ -53,7 +53,6 @@ def up(ssh: str, command: str, folder: Path) -> tuple[int, str]:
 
 
 def left_behind(folder: Path) -> list[str]:
-    """The command lines of processes that work in a folder."""
     found = []
     for process in Path("/proc").glob("[0-9]*"):
         try:

@@ -99,7 +99,6 @@ class Place:
 
 
 def free_port() -> int:
-    """Returns a free port below the ports of outgoing connections."""
     with hold_endpoint("tcp/127.0.0.1:0") as endpoint:
         return int(endpoint.rpartition(":")[2])
 

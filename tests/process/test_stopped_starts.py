@@ -9,7 +9,6 @@ from aos_deploy.history_check.files import check_run
 
 @pytest.fixture(autouse=True)
 def compiles(tmp_path, monkeypatch):
-    """No model is compiled yet, but the engine may be."""
     link_engines(kept_cache(), tmp_path / "cache")
     monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "cache"))
 

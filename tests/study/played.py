@@ -116,7 +116,6 @@ class _World(QuietPorts):
         )
 
     async def newest_model(self, running: RunningModel, past: Past) -> Takeover | None:
-        """The other model takes over when its step has come."""
         if self.next is None or self.steps < self.next[0]:
             return None
         takeover = await self.next[1].take_over(running, past)

@@ -269,7 +269,6 @@ MANY = replace(
 
 
 def small_screen() -> Screen:
-    """Twelve steps of the mission above, with a service that has a long name."""
     screen = Screen("armadillo · armadillo.yaml")
     for name in ("router", "registry", "middleware", "turtlebot_waffle", "solver"):
         screen.take(ServiceChanged(name, "ready", 0.5))

@@ -41,7 +41,6 @@ def cache_dir(cache_dir: Path, tmp_path_factory) -> Path:
 
 
 def emitted_skill(code: str, home: str = HOME) -> EmittedModel:
-    """A model with one skill, whose dynamic model starts in line 3 of act.sd."""
     act = f"project: test\ndynamic_model:\n{code}\n"
     return lowered(text_project({"home.ef": home, "act.sd": act}))[0]
 

@@ -20,7 +20,6 @@ def discrete(*weights: float, is_initial: bool = False) -> Draw:
 
 
 def counted(draw: Draw, *counts: int) -> DrawEstimate:
-    """Returns the estimate from missions of one draw each, in which the outcomes came so often."""
     lattices = [
         Lattice(np.ones(1), (), (np.array([[outcome]], dtype=np.int64),))
         for outcome, times in enumerate(counts, 1)

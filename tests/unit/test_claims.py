@@ -16,7 +16,6 @@ from aos_protocol.errors import DeployError
 
 
 def trial(*steps: str, seed: int = 1, ending: str = "goal", states: tuple[str, ...] = ()) -> Trial:
-    """A mission of steps that are written as `action > response`."""
     pairs = [step.split(" > ") for step in steps]
     return Trial(
         seed=seed,

@@ -15,7 +15,6 @@ from aos_deploy.cli import aos_app
 
 
 def paths_below(group: TyperGroup, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-    """The words after `aos` of each command, groups before their own."""
     yield path
     for name, command in group.commands.items():
         if isinstance(command, TyperGroup):
@@ -33,7 +32,6 @@ def help_of(root: TyperGroup, path: tuple[str, ...]) -> str:
 
 
 def cut_off(text: str) -> list[str]:
-    """The lines of the list of commands that do not end with the sentence."""
     return [line for line in text.partition("Commands:")[2].splitlines() if line.endswith("...")]
 
 

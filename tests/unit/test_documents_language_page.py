@@ -14,7 +14,6 @@ FOLDERS = {"json": "kettle-json", "ours": "kettle-sdl"}
 
 
 def examples(dialect: str) -> dict[str, bytes]:
-    """The examples of SDL on the page, or those of the folder that it leads to."""
     if folder := FOLDERS.get(dialect):
         return {path.name: path.read_bytes() for path in (ROOT / "docs" / "examples" / folder).iterdir()}
     text = (ROOT / "docs" / "languages.md").read_text(encoding="utf-8")

@@ -71,7 +71,6 @@ def decided(step: int) -> DecisionRecord:
 
 
 def make_run(folder: Path) -> Path:
-    """A run of three steps, as aos-up leaves it."""
     run = folder / "a-run"
     for inner in ("logs", "pictures", "credentials", "settings"):
         (run / inner).mkdir(parents=True)

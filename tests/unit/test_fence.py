@@ -20,7 +20,6 @@ def a_fence(*, solver_is_at: int | None) -> Fence:
 
 
 async def code_of(fence: Fence, request: Activate) -> str:
-    """The code with which a request is refused, or nothing."""
     try:
         await fence.check(request)
     except SkillError as error:

@@ -12,7 +12,6 @@ MARKS = {
 
 
 def counted(code: str, *, is_expression: bool = False) -> str:
-    """Returns the code with `+` before each condition that has to hold and `-` before each that must not."""
     cpp = read_cpp_expression(code) if is_expression else read_cpp(code)
     edits = counted_conditions([cpp], is_expression=is_expression)
     text = cpp.replace(dict.fromkeys(edits[0])) if edits else ""

@@ -95,7 +95,6 @@ class History:
         self.journal.append(Entry(stamp_ns, kind, payload))
 
     def place(self, kind: str, number: int, entries: list[Entry] | None = None) -> int:
-        """The place of the row that is the `number`th of its kind, from 0."""
         entries = self.journal if entries is None else entries
         return [place for place, entry in enumerate(entries) if entry.kind == kind][number]
 
@@ -207,7 +206,6 @@ BREAKS: dict[Callable[[History], None], str] = {}
 
 
 def breaks(rule: str) -> Callable[[Callable[[History], None]], None]:
-    """Marks a change of the history that breaks a rule."""
     return lambda spoil: BREAKS.update({spoil: rule})
 
 

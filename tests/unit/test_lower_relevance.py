@@ -208,12 +208,10 @@ def certain(project: Project) -> frozenset[str]:
 
 
 def looking(act: str, extrinsic: str = "", precondition: str = "") -> frozenset[str]:
-    """The skills of which all grounded actions do the same, among `act`."""
     return skills_alike(grounded(act, extrinsic, precondition))
 
 
 def grounded(act: str, extrinsic: str = "", precondition: str = "") -> Project:
-    """Documents of the skill `act`, which has a parameter `at`."""
     before = (
         "parameter: int at\navailable_parameters_code:\n__possibleParameters.push_back(std::make_tuple(0));\n"
     )

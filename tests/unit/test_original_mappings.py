@@ -23,7 +23,6 @@ def load(*documents: dict[str, Any]) -> LoadedBundle:
 
 
 def emitted(*mappings: dict[str, Any]) -> tuple[EmittedMapping, ...]:
-    """The modules of skills that are alike but for their names and mappings."""
     skills = [copy.deepcopy(SKILL) for _ in mappings]
     for skill, mapping in zip(skills, mappings, strict=True):
         skill["GsdlMain"]["Name"] = mapping["GsdlMain"]["Name"]

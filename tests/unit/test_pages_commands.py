@@ -58,7 +58,6 @@ def options() -> Options:
 
 
 def typed() -> list[tuple[str, str]]:
-    """The lines of code of all pages, each with its page."""
     return [
         (page.name, (found[1] or found[2]).strip())
         for page in PAGES

@@ -21,7 +21,6 @@ FIRST_SCREEN_LINES = 30
 
 
 def requirements(lock: Path) -> dict[str, list[str]]:
-    """Each pinned line of a lock file, as name -> hashes."""
     entries = re.split(r"\n(?=[a-z])", lock.read_text(encoding="utf-8").replace("\\\n", " "))
     return {
         Requirement(entry.split("--hash")[0]).name: re.findall(r"--hash=(\S+)", entry) for entry in entries

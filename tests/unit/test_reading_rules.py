@@ -136,7 +136,6 @@ REFUSED = [
 
 
 def bundle_of(rule: Rule) -> tuple[dict[str, bytes], Span]:
-    """The changed bundle and the place of the mark."""
     files = JSON if rule.file in JSON else SDL
     return changed(encoded(files), rule.file, rule.change)
 

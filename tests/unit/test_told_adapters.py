@@ -16,7 +16,6 @@ HERE = {"AOS_ENDPOINT": "tcp/127.0.0.1:7447", "AOS_ROBOT": "fetch", "AOS_ADAPTER
 
 @pytest.fixture
 def written(tmp_path) -> dict[str, str]:
-    """The environment that aos-up gives, with a settings file."""
     run = tmp_path / "20260101T000000Z-fetch"
     settings = AdapterSettings(
         robot="fetch",

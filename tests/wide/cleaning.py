@@ -94,7 +94,6 @@ if (state_.at == 0) {
 
 
 def cleaning_rule(rooms: int, rng: random.Random) -> float:
-    """Go from room to room, clean each once without a look, and come home with a full bin or to charge."""
     dirt = [rng.choices((0, 1, 2), (0.5, 0.3, 0.2))[0] for _ in range(rooms)]
     odds = [_BUSY if rng.random() < 0.4 else _QUIET for _ in range(rooms)]
     at, battery, filled, target = 0, _BATTERY, 0, 1

@@ -94,7 +94,6 @@ class Lock(World):
 
 
 def lock_rule(count: int, rng: random.Random) -> float:
-    """Probes each dial at the median of its belief until a digit has 0.95, turns it there, and pulls."""
     world = Lock(count, rng)
     odds = np.full((count, _DIGITS), 1 / _DIGITS)
     digits = np.arange(_DIGITS)

@@ -57,7 +57,6 @@ if (state.is_helped[0] && state.is_helped[1]) {{
 
 
 def rescue(high: int = 3) -> Bundle:
-    """Doors jam and can be forced, a battery is charged at the dock, and two people may be heard and seen."""
     writer = BundleWriter(f"rescue{high}", _environment(high))
     way = f"""int x = state.at % {_WIDE}, y = state.at / {_WIDE};
 int to_x = x + (direction == 1) - (direction == 3), to_y = y + (direction == 2) - (direction == 0);
@@ -186,7 +185,6 @@ def _way(world: Rescue, jams: np.ndarray, start: int, goal: int) -> tuple[int, i
 
 
 def rescue_rule(high: int, rng: random.Random) -> float:
-    """Goes to the nearest of the likely rooms, looks, assists by 0.6, forces doors, and charges in time."""
     world = Rescue(high, rng)
     jams = np.full(2 * world.rooms, _JAMS)
     odds = np.full(world.rooms, 2 / (world.rooms - 1))  # that an unhelped person is there

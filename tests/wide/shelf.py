@@ -9,7 +9,6 @@ _LOOK = 0.85
 
 
 def shelf(steps: int = 7) -> Bundle:
-    """There are so many steps until the box expires."""
     writer = BundleWriter(
         "shelf",
         f"""horizon: 10
@@ -57,7 +56,6 @@ __moduleResponse = holds ? got : missed;"""
 
 
 def shelf_rule(steps: int, rng: random.Random) -> float:
-    """Goes to the likeliest shelf, looks there until the box is there with 0.75, and grabs."""
     box, at, odds = rng.choices(range(3), _ODDS)[0], 0, list(_ODDS)
     earned, discount = 0.0, 1.0
     for _ in range(steps):

@@ -34,7 +34,6 @@ class World(ABC):
         self.steps += 1
 
     def play_at_random(self) -> float:
-        """Takes actions at random until the mission is over, and returns what was earned."""
         actions = self.actions()
         while not self.is_over:
             self.act(*self.rng.choice(actions))

@@ -75,7 +75,6 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
 
 
 def _not_looked_at(place: Span, extent: str) -> Diagnostic:
-    """A search that ended for its time in no code of the documents."""
     message = f"the search for what the actions lead to has ended: it took more than {MAX_CPU_S:g} s"
     hint = (
         f"{extent}. Nothing is told of goals and preconditions that nothing leads to, nor of faults behind it"

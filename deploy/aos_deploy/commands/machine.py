@@ -189,7 +189,6 @@ def _cache() -> Finding:
 
 
 def _sandbox() -> Finding:
-    """The confinement of documents' code, tried with a program that looks for a file of this user."""
     support = sandbox_support()
     if not support.is_whole:
         advice = "Documents run only with trust: documents in the deploy file, or --trust-documents"

@@ -187,7 +187,6 @@ def _filled(kind: str, **names: str) -> dict[str, str]:
 
 
 def _in_dialect(texts: dict[str, str], dialect: Dialect) -> dict[str, str]:
-    """The templates are in SDL."""
     if dialect is Dialect.SDL:
         return texts
     return convert({file: text.encode() for file, text in texts.items()}, dialect)[0]

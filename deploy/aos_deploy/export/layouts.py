@@ -67,7 +67,6 @@ def curves_of(records: Iterable[DecisionRecord]) -> Curves:
 
 
 def _add_number(numbers: list[tuple[str, ...]], variable: str) -> None:
-    """Adds the median of a number and what 90 % lie between."""
     paths: list[tuple[str, ...]] = [(BELIEF, "quantiles", variable, each) for each in ("p05", "p50", "p95")]
     if paths[0] not in numbers:
         numbers.extend(paths)

@@ -433,5 +433,4 @@ def _end_at_once(running: RunningProgram) -> None:
 
 
 def _folder_of(program: Program) -> Path:
-    """The folder of this machine that paths of a program's `ready` are relative to."""
     return Path() if program.host else Path(program.folder or "")

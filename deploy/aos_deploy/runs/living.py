@@ -138,7 +138,6 @@ def _is_named(run: RunDirectory, name: str) -> bool:
 
 
 def _opened(file: Path) -> Path:
-    """The directory of the run in a file, unpacked."""
     runs = opened_bundle(file)
     if len(runs) > 1:
         raise DeployError(f"{file} has {len(runs)} runs", hint=f"Name one of {', '.join(map(str, runs))}")

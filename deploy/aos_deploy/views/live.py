@@ -194,6 +194,5 @@ class LiveView:
 
 
 def _cells(table: Table) -> int:
-    """The width that a table takes where nothing limits it."""
     wide = Console(width=1000, file=io.StringIO())
     return wide.measure(table).maximum

@@ -70,7 +70,6 @@ def _comparison(row: Row) -> str:
 
 
 def _short(value: float) -> str:
-    """Three digits, with `k` for thousands and `M` for millions."""
     for size, letter in ((1e6, "M"), (1e3, "k")):
         if abs(value) >= size:
             return f"{_three(value / size)}{letter}"

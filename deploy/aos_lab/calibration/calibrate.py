@@ -20,7 +20,6 @@ from aos_solver.child.engine import Engine
 
 
 def _not_proposed(estimates: Sequence[DrawEstimate]) -> Iterator[str]:
-    """Yields the places where the records contradict a number that is not to be estimated."""
     for found in estimates:
         excluded = [outcome for outcome in found.outcomes if outcome.is_excluded and not outcome.is_inside]
         for outcome in excluded:

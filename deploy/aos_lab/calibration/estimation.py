@@ -188,7 +188,6 @@ def _alike(lattices: Sequence[Lattice]) -> list[tuple[Lattice, int]]:
 
 
 def _forward(lattice: Lattice, parameters: _Parameters, probabilities: Sequence[Numbers]) -> list[Numbers]:
-    """The odds of each layer's states by all that was observed before."""
     odds = [parameters.odds(layer, probabilities) for layer in lattice.drawn]
     forward = [_scaled(lattice.start * odds[0])]
     for link, layer_odds in zip(lattice.links, odds[1:], strict=True):

@@ -193,7 +193,6 @@ def _command(name: str, seeds: int, system_seeds: int, first_seed: int, parts: S
 
 
 def _check_place(on: str, seeds: int, system_seeds: int) -> None:
-    """BadParameter where missions cannot be run."""
     if not seeds and not system_seeds:
         raise typer.BadParameter("no missions: give --seeds or --system-seeds", param_hint="--seeds")
     if on == "local":

@@ -168,7 +168,6 @@ def solve(
 
 
 def _check_names(exports: list[Path], graph: Path | None) -> None:
-    """Refuses names of files with a wrong ending before the work begins."""
     for path in exports:
         if path.suffix not in WRITERS:
             raise typer.BadParameter(f"{path} needs to end in {' or '.join(WRITERS)}", param_hint="--export")

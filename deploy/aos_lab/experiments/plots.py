@@ -77,7 +77,6 @@ def _ends(value: Interval) -> tuple[float, float]:
 
 
 def _axis_of(rows: Sequence[_Row]) -> _Axis:
-    """Returns an axis that holds all bars, with a margin."""
     low = min(_ends(row.value)[0] for row in rows)
     high = max(_ends(row.value)[1] for row in rows)
     margin = 0.05 * (high - low) or 0.05 * abs(high) or 0.05

@@ -289,7 +289,6 @@ def _keys(found: list[_Steps]) -> Integers:
 
 
 def _sorted_steps(steps: list[list[_Steps]], codes: Integers) -> tuple[Integers, Integers, _Steps]:
-    """The row of every outcome, the order by row and next state, and all outcomes, action by action."""
     joined = _Steps(*(np.concatenate([_all(found, f) for found in steps]) for f in _Steps.__struct_fields__))
     action = np.repeat(np.arange(len(steps)), [sum(len(s.after) for s in found) for found in steps])
     rows = np.searchsorted(codes, joined.before) * len(steps) + action

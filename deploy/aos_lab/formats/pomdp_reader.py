@@ -247,7 +247,6 @@ class _Reader:
     def _check(
         self, keyword: str, table: dict[tuple[int, int], Distribution], needed: set[tuple[int, int]]
     ) -> None:
-        """Probabilities sum to 1 where that matters, and exactly so afterwards."""
         rows = {id(row): row for row in table.values()}
         totals = {number: sum(row.values()) for number, row in rows.items()}
         scaled: dict[int, Distribution] = {}

@@ -66,12 +66,10 @@ def _models(assembly: Assembly, findings: Findings) -> dict[str, MonitorModel]:
 
 
 def _as_skill(model: MonitorModel) -> SkillModel:
-    """A monitor's model in the place where a skill says what it reports."""
     return SkillModel("", model.name, model.span, dynamic_model=model.code)
 
 
 def _check_form(mapping: AbstractionMapping, findings: Findings) -> None:
-    """Reports what a monitor lacks, and what only a skill can have."""
     for variable in mapping.local_variables:
         if variable.source is not LocalSource.TOPIC:
             source = "parameters" if variable.source is LocalSource.PARAMETER else "result"

@@ -140,7 +140,6 @@ def _names_of_constants(document: LowLevelDocument | None) -> frozenset[str]:
 
 
 def _names_of_shared(snippet: Snippet | None) -> frozenset[str]:
-    """Returns the names that the environment's `shared_mapping_code` gives to the mappings' modules."""
     if snippet is None:
         return frozenset()
     try:

@@ -87,7 +87,6 @@ def _check_lone_commas(snippet: Snippet, tree: ast.AST, findings: Findings) -> N
 
 
 def _check_bit_operators(snippet: Snippet, tree: ast.AST, findings: Findings) -> None:
-    """Warns of `a > 4 & b`, which compares `a` with `4 & b`."""
     lines = snippet.code.split("\n")
     for node in ast.walk(tree):
         if not isinstance(node, ast.Compare):

@@ -86,7 +86,6 @@ def _starts(root: tree_sitter.Node) -> list[tree_sitter.Node]:
 
 
 def _are_values(parameters: tree_sitter.Node) -> bool:
-    """Returns whether what was read as parameters has neither names nor types of C++ alone."""
     for part in parameters.named_children:
         if part.is_error:
             continue

@@ -204,7 +204,6 @@ class Record:
         return None if snippet is None else expression(snippet)
 
     def _literal(self, key: str) -> Snippet | None:
-        """A value that should be code and is no text, as Python writes it."""
         value = self._value(key)
         if not isinstance(value, JsonNumber | JsonConstant):
             return None

@@ -131,7 +131,6 @@ class _Middleware:
         )
 
     def _take_over(self) -> None:
-        """Other mappings are in use."""
         self._monitors.follow(self._mappings.monitors)
         self._tell_state()
 

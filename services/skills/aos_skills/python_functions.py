@@ -227,7 +227,6 @@ class PythonAdapter:
 
 
 def _own_names(module: ModuleType) -> list[str]:
-    """The functions and classes that a module defines itself, with the methods of the classes."""
     own: list[str] = []
     for name, value in vars(module).items():
         if name.startswith("_") or getattr(value, "__module__", None) != module.__name__:

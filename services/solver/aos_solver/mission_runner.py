@@ -163,7 +163,6 @@ class MissionRunner:
 
     @property
     def _runs(self) -> bool:
-        """Says whether a mission runs, or one that has begun is to be taken up."""
         if self.mission is not None:
             return self.mission.state.phase != "ended"
         return self.is_interrupted
@@ -194,7 +193,6 @@ class MissionRunner:
         return SteeringError(f"the mission does not begin: {self._unwanted}", hint="Start it once more")
 
     async def _begin_only(self) -> None:
-        """Begins the only mission of a system that ends with it, or takes it up."""
         book = self._books.newest
         assert book is not None
         running = await self._unless_given_up(self._first_model())

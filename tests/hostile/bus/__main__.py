@@ -61,7 +61,6 @@ def forgeries(folder: Path, _: argparse.Namespace) -> int:
 
 
 def malformed(folder: Path, options: argparse.Namespace) -> int:
-    """Messages that nobody can read, on every key."""
     broken, slowest_s, most_bytes = 0, 0.0, 0
     with cell(folder) as mission:
         for key, user, is_question in flooded_keys():

@@ -80,7 +80,6 @@ class Cell:
         return self.run.name
 
     def session(self, user: str) -> zenoh.Session:
-        """A bare session with the credential of a party of the run."""
         if user not in self._sessions:
             self._sessions[user] = opened(self.record.endpoint, credential_of_run(self.run, user))
         return self._sessions[user]

@@ -86,7 +86,6 @@ def _of_sender(row: Row, key: str, roles: tuple[str, ...], is_question: bool) ->
 
 
 def flooding(cell: Cell, key: str, user: str, is_question: bool, count: int) -> Flood:
-    """Sends so many messages on the key, while the operator asks each service something."""
     session, asker = cell.session(user), cell.session(OPERATOR)
     # A question with other fields is one to stop the mission all the same.
     messages = [one for one in noise(1) if key != KEYS.stop_mission or not _is_message(one)]

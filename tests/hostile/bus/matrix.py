@@ -86,7 +86,6 @@ def wrong(routed: Routed, tried: Iterable[Attempt]) -> Iterator[str]:
 
 
 def has_effect(routed: Routed, attempt: Attempt, partner: Party) -> bool:
-    """Says whether the partner, who does the opposite, notices the act, or the party what it wants to."""
     own, other = routed.session(attempt.party.name), routed.session(partner.name)
     is_first = attempt.act in ("asks", "tells", "announces")
     actor, listener = (own, other) if is_first else (other, own)

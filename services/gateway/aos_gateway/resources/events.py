@@ -98,7 +98,6 @@ async def _past(run: Run, mission: str, since: int) -> AsyncIterator[Frame]:
 
 
 async def _end(run: Run, mission: str) -> Frame | None:
-    """The state of a mission that is over, which nobody on a bus tells any more."""
     state = await run.last_state(mission)
     return frame_of_state(state) if state is not None and state.phase == "ended" else None
 

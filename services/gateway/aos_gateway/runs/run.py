@@ -177,7 +177,6 @@ class KeptRun(Run):
         return self.is_running and self.directory.interrupt(self.record.pid)
 
     def _goes_on_again(self) -> bool:
-        """Says whether a run whose aos-up was killed was taken up, and may be over again."""
         if self._last is None or self._has_summary:
             return False
         return self.directory.is_held or self.directory.read_summary() is not None

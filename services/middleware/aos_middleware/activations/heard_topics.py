@@ -63,7 +63,6 @@ class HeardTopics:
             self._has_received.set()
 
     async def _evaluate(self, messages: list[tuple[str, dict[str, Any]]]) -> None:
-        """Hands messages over to mapping code, and has the skill stopped where one of them says so."""
         while messages and self.fault is None:
             try:
                 taken = await self._evaluator.take(messages)

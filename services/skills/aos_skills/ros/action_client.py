@@ -75,7 +75,6 @@ class ActionClient:
         return ActionEnd(ENDED[end["status"]], end["result"])
 
     async def _listen(self, action: str, type_name: str, goal: bytes, take: Callable[[Fields], None]) -> None:
-        """Has a goal's feedback taken until it is forgotten."""
         if action not in self._takers:
             takers = self._takers[action] = {}
 

@@ -236,7 +236,6 @@ def _field(name: str, description: Any) -> Field:
 
 
 def _renamed(field: Any) -> Any:
-    """A field whose type, if rosbags calls it `package/srv/msg/X`, is `package/srv/X`."""
     name, description = field
     return name, _mapped(description, lambda base: base, lambda used: used.replace("/srv/msg/", "/srv/"))
 

@@ -156,7 +156,6 @@ class Node(Ros2Node):
         return endpoint
 
     def _hash(self, topic: str, type_name: str) -> str:
-        """The hash that the topic's publisher uses, if there is one already."""
         for publisher in self.graph.find(Kind.PUBLISHER, topic):
             if publisher.type_name == type_name:
                 self._same_definition(publisher)

@@ -257,7 +257,6 @@ class _Build(msgspec.Struct, frozen=True):
         return internal_error(project, "\n".join(report.outside) or output, status, self._kept_source())
 
     def _limit_error(self) -> ModelError:
-        """The error at the first document code that may compute while it is compiled, if there is any."""
         message = f"the compiler ran out of time or memory on {self.emitted.project}"
         suspects = (piece for piece in self.emitted.pieces if _COMPILE_TIME_CODE.search(piece.text))
         spans = tuple(piece.locate(1, 1) for piece in suspects)

@@ -231,7 +231,6 @@ class Mission:
         return not self._is_stopped()
 
     def _is_stopped(self) -> bool:
-        """Ends the mission where somebody wants that."""
         if self._to_stop:
             self._reports.end(Ending.CANCELLED, self._to_stop)
         return bool(self._to_stop)
@@ -286,7 +285,6 @@ class Mission:
         return None
 
     async def _next(self, step: int, asked: Asked | None) -> Choice | Ended | Held | Refused:
-        """The choice of the action that somebody has asked for, or else the mission's own."""
         if asked is not None:
             return await self._chooser.asked_for(self._model, step, asked)
         return await self._chooser.choose(self._model, step, self.belief)

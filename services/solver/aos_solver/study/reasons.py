@@ -171,7 +171,6 @@ class Reasons:
     async def _terms(
         self, other: str, value: float, other_value: float
     ) -> tuple[tuple[ValueTerm, ...], float, float]:
-        """The parts of both values by statement, and what is not told apart of each."""
         try:
             traced = await self._traced.of(await self._replay.model())
             await traced.engine.import_beliefs(await self._engine.export_beliefs())

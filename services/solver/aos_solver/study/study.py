@@ -99,7 +99,6 @@ class Study:
                 raise
 
     async def _at(self, mission: str, step: int) -> tuple[ReplayedMission, DecisionRecord]:
-        """A replay at the belief of a step's decision, from where the last question has left it if it can."""
         recorded = await self._source.recorded(mission)
         decision = recorded.decision(step)
         replay = self._replay

@@ -223,7 +223,6 @@ class Asking(Closing):
             raise AssertionError
 
     async def _asked(self, command: str, kind: type[A], deadline_s: float) -> A:
-        """The answer of the child, or of another one that is started with the same belief."""
         if self._child is None or not self._child.is_running:
             await self._restart_child()
         assert self._child is not None
@@ -243,7 +242,6 @@ class Asking(Closing):
         return await at_its_statement(fault, self._built, self._start, commands)
 
     async def _begin_child(self) -> None:
-        """Starts a child on the initial belief, and another one where it is killed meanwhile."""
         for again in range(_KILLED_TIMES + 1):
             try:
                 return await self._start_child()

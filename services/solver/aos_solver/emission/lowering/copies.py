@@ -154,7 +154,6 @@ def _makes_handle(mention: Mention) -> bool:
 
 
 def _bound(cpp: Cpp, names: _Names) -> Iterator[Extent]:
-    """Yields the expressions that references, pointers, iterators and views are made of."""
     types = names.types | {enum.name for enum in cpp.declarations if enum.kind is DeclarationKind.ENUM}
     for declaration in cpp.declarations:
         if declaration.initial is None:

@@ -72,7 +72,6 @@ class Changes:
             self.object_types.add(type_name)
 
     def _changed_by_shared_code(self, cpp: Cpp) -> dict[int, set[str]]:
-        """The members that a shared function changes, for each place where it is given the whole state."""
         found: dict[int, set[str]] = {}
         own = {declaration.name for declaration in cpp.declarations}
         for call in cpp.calls:

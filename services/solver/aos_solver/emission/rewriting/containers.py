@@ -84,7 +84,6 @@ def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
 
 
 def _is_plain_lambda(cpp: Cpp, declaration: Declaration) -> bool:
-    """Returns whether a variable is a lambda for good, and one that does not call itself."""
     initial = declaration.initial
     assert initial is not None
     uses = [mention for mention in cpp.mentions if mention.path[0] == declaration.name]
@@ -104,7 +103,6 @@ def _holds(declaration: Declaration, places: set[int]) -> bool:
 
 
 def _leads_to_state(cpp: Cpp, declaration: Declaration) -> bool:
-    """Returns whether a variable starts with the state, or with a reference or a pointer into it."""
     places = _places_of_state(cpp)
     for earlier in cpp.declarations:
         if earlier is declaration:

@@ -62,7 +62,6 @@ def _within_types(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int,
 
 
 def _is_list(cpp: Cpp, initial: Extent, object_types: frozenset[str]) -> bool:
-    """Returns whether a variable starts as a list of objects, and not as one of them."""
     lists = {f"{name}Objects" for name in object_types}
     return any(
         mention.extent == initial and mention.path[0] in STATES and mention.path[1] in lists
@@ -72,7 +71,6 @@ def _is_list(cpp: Cpp, initial: Extent, object_types: frozenset[str]) -> bool:
 
 
 def _waits_for_its_object(cpp: Cpp, declaration: Declaration) -> bool:
-    """Returns whether a pointer starts without an object, and so without a type to take over."""
     if declaration.kind is not DeclarationKind.VARIABLE:
         return False
     initial = declaration.initial

@@ -291,7 +291,6 @@ def _nothing_left(reasons: Mapping[str, str]) -> str:
 
 
 def _kept_back(plan: Plan, barred: Mapping[str, str]) -> dict[str, str]:
-    """The actions that are worth more than the choice and cannot be carried out now, with the reasons."""
     best = plan.best
 
     def is_worth_more(value: ActionValue) -> bool:

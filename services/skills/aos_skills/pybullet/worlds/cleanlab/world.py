@@ -92,7 +92,6 @@ class CleanLab(World):
         return is_upright and not self.robot.gripper.holds(cup)
 
     def _at(self) -> str:
-        """The station or the bin that the robot stands in front of, or nothing."""
         x, y, _ = self.robot.base.place
         places = {**self.file.stations, **self.file.bins}
         near = (name for name, place in places.items() if math.dist((x, y), (place.x, place.y)) < BESIDE_M)
