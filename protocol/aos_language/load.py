@@ -11,6 +11,7 @@ import msgspec
 
 from aos_language.archive import is_archive_name, read_archive
 from aos_language.assembly import Assembly, assemble
+from aos_language.borrowed_imports import borrow_imports
 from aos_language.check import check
 from aos_language.check.bare_names import check_bare_names
 from aos_language.findings import Findings
@@ -80,6 +81,7 @@ def load_files(
         is_document_name(file) and file not in documents and file != PICTURE for file in files
     )
     assembly = assemble(documents, findings, bundle=name, has_unread_files=has_unread_files)
+    borrow_imports(assembly, findings)
     check(assembly, findings)
     errors = [found for found in findings.sorted() if found.is_error]
     project = None if errors else assembly.project()

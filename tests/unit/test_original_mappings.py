@@ -93,3 +93,17 @@ def test_fields_are_computed_from_all_local_variables(mapping: dict[str, Any]):
     service["ServiceParameters"] = [{"ServiceFieldName": "loud", "AssignServiceFieldCode": "not is_full"}]
     (pour,) = emitted(mapping)
     assert fields(loaded(pour), CUP) == {"loud": True}
+
+
+def test_a_mapping_finds_what_only_another_one_imports(mapping: dict[str, Any]):
+    other = copy.deepcopy(mapping)
+    other["GsdlMain"]["Name"] = "fill"
+    del other["ModuleActivation"]["RosService"]["ImportCode"]
+    other["LocalVariablesInitialization"][1]["AssignmentCode"] = "success = math.floor(1.5) == 1"
+    _, fill = emitted(mapping, other)
+    assert observed(loaded(fill), CUP, [], GRIPPED).local_variables["success"] == "true"
+    skill = copy.deepcopy(SKILL)
+    skill["GsdlMain"]["Name"] = "fill"
+    found = load(ENVIRONMENT, LOW_LEVEL, SKILL, skill, mapping, other).diagnostics
+    told = [finding.message for finding in found if finding.span.file == "5.json"]
+    assert told == ["`math` is imported in 4.json alone, and is taken from there"]

@@ -121,8 +121,13 @@ class PythonNames(msgspec.Struct, frozen=True):
 
 def _imported_names(imports: Iterable[Import]) -> frozenset[str] | None:
     """The names that imports bring; None where an `import *` brings names we cannot know."""
-    names = [name.split(" as ")[-1].strip().split(".")[0] for item in imports for name in item.names]
+    names = [imported_name(name) for item in imports for name in item.names]
     return None if "*" in names else frozenset(names)
+
+
+def imported_name(text: str) -> str:
+    """Returns the name that one part of an import brings: `b` of `a as b`, `a` of `a.b`."""
+    return text.split(" as ")[-1].strip().split(".")[0]
 
 
 def _names_of_constants(document: LowLevelDocument | None) -> frozenset[str]:

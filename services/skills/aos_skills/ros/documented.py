@@ -1,10 +1,10 @@
 """The words of a project's mappings about its robot: the paths that they call, the topics that they listen
 to."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from aos_protocol.documents import Import, LocalSource, Project
+from aos_protocol.documents import AbstractionMapping, Import, LocalSource, Project
 
 
 class Documented(NamedTuple):
@@ -15,19 +15,30 @@ class Documented(NamedTuple):
 
 
 def documented(project: Project) -> Documented:
-    """Paths and topics of all mappings of a project, with a leading slash."""
+    """Paths and topics of all mappings of a project, with a leading slash.
+
+    A type may be imported by another mapping, as in the original system, if that names it.
+    """
     paths: dict[str, str] = {}
     topics: dict[str, str] = {}
+    of_all = [one for skill in project.skills for one in _imports(skill.mapping) if "*" not in one.names]
     for skill in project.skills:
         activation = skill.mapping.activation
         path = "/" + activation.path.strip("/")
-        paths[path] = paths.get(path) or _full_type(activation.service_type, "srv", activation.imports)
+        imports = (*activation.imports, *of_all)
+        paths[path] = paths.get(path) or _full_type(activation.service_type, "srv", imports)
         for variable in skill.mapping.local_variables:
             if variable.source is LocalSource.TOPIC:
-                imports = (*variable.imports, *activation.imports)
+                imports = (*variable.imports, *activation.imports, *of_all)
                 topic = "/" + variable.topic.strip("/")
                 topics[topic] = topics.get(topic) or _full_type(variable.message_type, "msg", imports)
     return Documented(paths, topics)
+
+
+def _imports(mapping: AbstractionMapping) -> Iterator[Import]:
+    yield from mapping.activation.imports
+    for variable in mapping.local_variables:
+        yield from variable.imports
 
 
 def _full_type(name: str, kind: str, imports: Iterable[Import]) -> str:
