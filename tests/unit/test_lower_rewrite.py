@@ -83,6 +83,8 @@ def test_plain_code_stands_as_it_is(code):
         ("b = slips(odds[i][0]);", "b = slips(AOS, aos::at(aos::at(odds, i), 0));"),
         ("std::vector<tBox*> a = state__.tBoxObjects; n = state.tBoxObjects.size();",
          "std::vector<tBox*> a = state__.tBoxObjects(); n = state.tBoxObjects().size();"),
+        ("vector<tBox*> a{&state__.one}; auto b = state.tBoxObjects[0];",
+         "vector<tBox*> a{&state__.one}; auto b = state.tBoxObjects()[0];"),
         ("for (tBox* box : state.tBoxObjects) n++;", "for (auto* box : state.tBoxObjects()) n++;"),
         ("auto f = [](tBox* box) { return box->x; };", "auto f = [](auto* box) { return box->x; };"),
         ("c = AOS.SampleDiscrete(tColour, {1, 2});", "c = AOS.template SampleDiscrete<tColour>({1, 2});"),

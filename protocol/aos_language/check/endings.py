@@ -37,7 +37,9 @@ def check_goals(environment: Environment, models: Iterable[SkillModel], findings
     endings = [special for special in environment.special_states if _may_end(special)]
     if not endings:
         message = "no special state ends the mission: it runs until its step limit"
-        hint = "If it has a goal, set `__isGoalState = true;` in a `reward_code:`"
+        is_json = environment.span.file.endswith(".json")
+        words = '`"IsGoalState": true`' if is_json else "`is_goal_state: true`"
+        hint = f"If it has a goal, let a special state say {words}, or its code `__isGoalState = true;`"
         findings.remark("AOS139", message, environment.span, hint)
     elif not any(_may_be_goal(special) for special in endings):
         unpaid = [special for special in endings if _is_neither(special)]

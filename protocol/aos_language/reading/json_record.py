@@ -42,6 +42,17 @@ _BUILT_ON = frozenset({
     "SpecialStates", "StateConditionCode", "StateFunctionCode", "TempVar", "Type", "TypeName", "Value",
     "VarName", "VariableType", "Variables",
 })  # fmt: skip
+_HOMES = {
+    "FromStringLocalVariable": "ModuleResponse",
+    "GlobalVariablePreconditionAssignments": "Preconditions",
+    "NextStateAssignments": "DynamicModel",
+    "PlannerAssistancePreconditionsAssignments": "Preconditions",
+    "ResponseRules": "ModuleResponse",
+    "RosService": "ModuleActivation",
+    "ServicePath": "RosService",
+    "ViolatingPreconditionPenalty": "Preconditions",
+}
+"""The keys of objects that people forget, or close too early, each with the object's key."""
 _IN_PLACE_OF_TEXT = {
     "a list": "A list stands in brackets, each of its texts in quotes",
     "a number": "A number stands without quotes",
@@ -114,7 +125,9 @@ class Record:
             if name in self._known:
                 continue
             message, span = f'unknown key "{name}" in {self.what}', self.source.span(key.start + 1)
-            if self._lacking:
+            if home := _HOMES.get(name):
+                self.findings.error("AOS102", message, span, f"It belongs in `{home}`")
+            elif self._lacking:
                 near = get_close_matches(name, self._lacking, 1, _STANDS_FOR)
                 hint = f"Did you mean `{near[0]}`?" if near else f"Missing here: {quoted(self._lacking)}"
                 self.findings.error("AOS102", message, span, hint)
@@ -154,7 +167,8 @@ class Record:
         """true or false; as text too, with a warning."""
         value = self._value(key)
         if isinstance(value, JsonString) and value.text.strip().lower() in _BOOLEANS:
-            self.findings.warning("AOS127", f'"{key}" is given as text', self.value_span(key))
+            message, span = f'"{key}" is given as text', self.value_span(key)
+            self.findings.warning("AOS127", message, span, _IN_PLACE_OF_TEXT["true or false"])
             return _BOOLEANS[value.text.strip().lower()]
         found = self._read(key, False, "true or false", _boolean)
         return default if found is None else found

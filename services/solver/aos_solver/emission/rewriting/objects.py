@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 
 from aos_language.cpp.flow import STATES
-from aos_language.cpp.snippets import Cpp, Declaration, DeclarationKind, Extent, strip_comments
+from aos_language.cpp.snippets import Access, Cpp, Declaration, DeclarationKind, Extent, strip_comments
 
 _POINTER = re.compile(r"(\bconst\s+)?\b([A-Za-z_]\w*)\s*\*\s*$")
 _REFERENCE = re.compile(r"(\bconst\s+)?\b([A-Za-z_]\w*)\s*&\s*$")
@@ -88,10 +88,14 @@ def _copy_set_from(cpp: Cpp, declaration: Declaration, type_name: str) -> str:
 
 
 def _copies_in(cpp: Cpp, type_name: str, extent: Extent | None = None) -> set[str]:
+    """The copies of the state whose objects are mentioned anywhere in the code, or pointed at in a part."""
     return {
         mention.path[0]
         for mention in cpp.mentions
         if mention.path[0] in STATES
-        and mention.path[1:2] == (f"{type_name}Objects",)
         and (extent is None or extent.start <= mention.extent.start < extent.end)
+        and (
+            mention.path[1:2] == (f"{type_name}Objects",)
+            or (extent is not None and mention.access is Access.BIND)
+        )
     }
