@@ -10,7 +10,6 @@ HEAD = "aos: 1\nrobot: rover\nbundles: [bundle]\n"
 
 
 def world_without_pictures(folder: Path) -> Path:
-    """Writes the Armadillo's world without pictures, which take most of a mission's processor time."""
     path = folder / "world.yaml"
     path.write_text((DEPLOY / "worlds/armadillo.yaml").read_text() + "pictures: false\n")
     return path

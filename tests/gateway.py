@@ -164,7 +164,6 @@ def environment(folder: Path) -> dict[str, str]:
 
 @contextmanager
 def gateway(folder: Path, *options: str) -> Iterator[Gateway]:
-    """A gateway of the runs and deploy files in a folder."""
     port = () if "--port" in options else ("--port", "0")
     with running(folder, "aos", "serve", *port, *options) as process:
         assert process.stdout is not None
@@ -228,7 +227,6 @@ def write_slow_tiger(folder: Path) -> None:
 
 
 def slow_deploy_file(folder: Path, step_limit: int = 1_000_000) -> Path:
-    """The deploy file of a robot that listens once for each byte written to the pipe `turns` beside it."""
     os.mkfifo(folder / "turns")
     write_slow_tiger(folder)
     (folder / "robot.py").write_text(SLOW_ROBOT)

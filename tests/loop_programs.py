@@ -89,7 +89,6 @@ def _turn(random: Random, number: int, by: int) -> tuple[str, Meaning]:
 
 
 def _absorbed(odds: Odds, once: Meaning, is_end: Callable[[Numbers], bool]) -> Odds:
-    """The odds of the ends to which rounds lead, by the linear equations of the chain."""
     rows: dict[Numbers, Odds] = {}
     waiting = [numbers for numbers in odds if not is_end(numbers)]
     while waiting:

@@ -52,7 +52,6 @@ sys.exit(child.wait() % 256)
 
 
 def stand_in(folder: Path) -> str:
-    """A folder for the PATH with an `ssh` that reaches `robot@arm`, which is this machine."""
     return _program(folder, STAND_IN.format(python=sys.executable))
 
 

@@ -11,7 +11,6 @@ from tests.chaos.up import compile_bundles
 
 
 def main() -> int:
-    """Exit code 0 where every run kept what is promised."""
     parser = argparse.ArgumentParser(prog="python -m tests.chaos", description=__doc__)
     for part, counted in PARTS.items():
         parser.add_argument(f"--{part}", type=int, default=0, help=counted)

@@ -83,7 +83,6 @@ def _disturb(folder: Path, up: Up, kind: str, victims: list[int], frozen_s: floa
 
 
 def _let_it_end(folder: Path, up: Up):
-    """Ends a mission that goes on, as Ctrl-C does, after one more decision."""
     if up.until_decision():
         send(up.process.pid, signal.SIGINT)
     while up.next() is not None:

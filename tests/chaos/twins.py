@@ -90,7 +90,6 @@ async def _started(built: BuiltModel, seed: int) -> Engine:
 
 
 def _kill(engine: Engine, chance: random.Random):
-    """Kills the engine or its guard, which takes it along, unless the one before it has just ended."""
     with contextlib.suppress(FileNotFoundError):
         if engine.pid is not None:
             send(chance.choice([engine.pid, *descendants(engine.pid)]), signal.SIGKILL)

@@ -36,7 +36,6 @@ async def registry(tmp_path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterat
 
 
 def mutated(data: bytes, chance: random.Random) -> bytes:
-    """Bytes with pieces of it overwritten, cut out, repeated or made of control characters."""
     raw = bytearray(data)
     for _ in range(chance.randint(1, 8)):
         start = chance.randrange(len(raw) + 1)

@@ -27,7 +27,6 @@ Accepted = dict[int, bytes]
 
 
 async def push_on(bus: Bus, keys: Keys, pick: bytes, accepted: Accepted):
-    """Pushes one changed document after the other, for as long as it is answered."""
     while True:
         document = pick + f"// {os.urandom(8).hex()}\n".encode()
         report: BundleReport = await push(bus, keys, {"pick.sd": document})

@@ -106,7 +106,6 @@ class Lab(AdapterProcess):
                     return
 
     async def until_lacked(self, path: str, reason: str) -> str:
-        """Returns why the path is not served, once the reason has these words."""
         async with asyncio.timeout(HANG_S), self.bus.presence(self.keys.all_lacks) as present:
             async for key, is_there in present:
                 lack = self.keys.lack_of(key)

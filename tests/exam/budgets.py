@@ -78,7 +78,6 @@ async def _cost(
     seed: int,
     script: list[tuple[str, str, dict[str, Any]]],
 ) -> Cost:
-    """Fills an empty `script` with actions and what was observed, and else follows it."""
     is_first = not script
     if is_first:
         await engine.reset_world(seed)

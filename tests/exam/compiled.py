@@ -122,7 +122,6 @@ async def _mission(
 
 
 def _following(problem: Problem, action: int) -> Iterator[tuple[int, Problem]]:
-    """The problem after each observation with which the mission may go on."""
     weights: dict[int, dict[int, float]] = {}
     for state, share in problem.starts:
         for odds, after, sensing, _ in problem.rows[state, action]:

@@ -53,7 +53,6 @@ def _with_clock(random: random.Random, world: World) -> World:
 
 
 def _with_dice(random: random.Random, world: World) -> World:
-    """A number that is thrown at every step."""
     sides = random.randint(2, 3)
     thrown = [(1 / sides, value) for value in range(sides)]
     return _beside(random, world, "dice", thrown, lambda value, action: thrown)

@@ -43,7 +43,6 @@ def dense(random: Random, large: bool) -> World:
 
 
 def ties(random: Random, large: bool) -> World:
-    """Actions that do the same, whole rewards, equal values everywhere."""
     states, kinds = (random.randint(8, 20) if large else random.randint(2, 5)), random.randint(2, 3)
     twins = random.randint(2, 4)
     moves = {key: random.randrange(states) for key in product(range(states), range(kinds))}

@@ -41,7 +41,6 @@ def what_decides(compiler: Compiler, *folders: Path) -> list[str]:
 
 @cache
 def _texts(folder: Path) -> list[str]:
-    """The C++ below a folder, which nobody changes while tests run."""
     return [path.read_text() for path in sorted(folder.rglob("*.[ch]pp"))]
 
 

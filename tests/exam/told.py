@@ -39,7 +39,6 @@ class Told:
 
     @property
     def is_right(self) -> bool:
-        """True within two standard errors, of the value and of the mean together, or a share of the range."""
         error = math.hypot(self.error, self.returned_error)
         return abs(self.value - self.returned) <= max(2 * error, ALLOWED_SHARE * self.range)
 

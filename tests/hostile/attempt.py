@@ -206,7 +206,6 @@ class Playground:
         link_engines(self._engines, self._cache)
 
     def _broken(self, said: str, but: tuple[int, ...] = ()) -> Iterator[str]:
-        """The promises that do not hold after an attempt."""
         if DID_NOT_END in said:
             yield "the command did not end when it was told to"
         yield from self._secret.broken(said, self.folder)

@@ -40,7 +40,6 @@ def import_commands():
 
 
 def processor_s() -> float:
-    """The processor time of all that has ended below this process."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -121,7 +120,6 @@ class Command:
         return self._said.stat().st_size
 
     def end(self, after_s: float = 0.0) -> str:
-        """Has it end by Ctrl-C if it has not after a time, and returns all that it has said."""
         self._wait(after_s)
         if not self.has_ended:
             os.kill(self.pid, signal.SIGINT)

@@ -96,7 +96,6 @@ class Project:
         return Change("removed", removed=self._facts.peeks.pop())
 
     def _put_back(self) -> Change:
-        """The documents of before the last edit, which were compiled."""
         if not self._before:
             return self._edited("reward")
         return Change("put back", self._before[-1])

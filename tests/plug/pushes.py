@@ -226,6 +226,5 @@ def between(records: Sequence[DecisionRecord]) -> list[float]:
 
 
 async def _drained(stream: asyncio.StreamReader):
-    """Returns at the end of a stream that nobody reads."""
     while await stream.read(2**16):
         pass

@@ -231,7 +231,6 @@ async def interleaved(seed: int) -> Interleaving:
 
 
 async def _settle(world: _World, mission: asyncio.Task[None], revision: int):
-    """Pushes another revision, after which nothing fails, and looks whether the mission comes to run it."""
     world.failing = 0.0
     await world.make(revision)
     world.mapped = revision

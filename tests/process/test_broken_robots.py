@@ -49,7 +49,6 @@ bind:
 
 @pytest.fixture
 def project(tmp_path) -> Path:
-    """The tutorial's project with its skill `ask`."""
     with contextlib.chdir(tmp_path):
         aos("new", "project", "fetch")
     (asks,) = (step.text for step in steps_of() if step.kind == "file: fetch/ask.sd")

@@ -109,7 +109,6 @@ FAULTS = {
 
 @pytest.fixture(autouse=True)
 def _has_time(monkeypatch):
-    """A busy machine takes longer to meet the fault again, which says nothing of the statement."""
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
 
 

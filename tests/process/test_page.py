@@ -136,7 +136,6 @@ def test_slider_and_keys_move_all_views_and_the_address(browser: Browser, past: 
 
 
 def late(browser: Browser, served: Gateway, run: Path, view: str = "") -> Page:
-    """A view of a living mission that has made a step already."""
     (run.parents[1] / "turns").write_bytes(b".")
     page = opened(browser, served)
     page.goto(f"http://127.0.0.1:{served.port}/#/missions/{run.name}{view}")

@@ -124,7 +124,6 @@ def original_on_our_robot(corpus: Path, folder: Path) -> str:
 
 
 def assert_whole_mission(events: list[dict[str, Any]], run: Path):
-    """Every skill that was chosen was observed, and the mission came to an ending that is defined."""
     steps = [event for event in events if event["event"] == "decision" and event.get("outcome")]
     assert steps, events
     assert {step["outcome"]["status"] for step in steps} == {"observed"}

@@ -69,7 +69,6 @@ async def test_bounds_only_come_nearer():
 
 
 def random_model(seed: int) -> ExplicitModel:
-    """Two states, up to three actions and observations, anything else by chance."""
     random = np.random.default_rng(seed)
     actions, observations = (int(n) for n in random.integers(2, 4, 2))
     rows = 2 * actions
@@ -94,7 +93,6 @@ def random_model(seed: int) -> ExplicitModel:
 
 
 def value_on_a_grid(model: ExplicitModel) -> float:
-    """The value of the start by value iteration over beliefs in two states, linear between the points."""
     actions, observations = len(model.actions), len(model.observations)
     transitions = model.outcomes.probabilities.reshape(2, actions, 2)
     sensing = model.likelihoods.probabilities.reshape(2, actions, 2, observations)

@@ -31,7 +31,6 @@ asyncio.run(hold())
 
 @contextmanager
 def another_process_makes(entry: Path) -> Iterator[subprocess.Popen[str]]:
-    """A process that holds the lock of an entry until its input ends."""
     lock = entry.with_name(f"{entry.name}.lock")
     command = [sys.executable, "-c", HOLDER, str(lock)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as holder:

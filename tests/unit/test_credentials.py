@@ -144,7 +144,6 @@ def test_a_unit_starts_a_mission_with_the_machine(tmp_path, monkeypatch):
 
 @pytest.fixture
 def short_folder() -> Iterator[Path]:
-    """A folder whose path leaves place for that of a socket."""
     with tempfile.TemporaryDirectory(dir="/tmp") as folder:
         yield Path(folder)
 

@@ -15,7 +15,6 @@ state.level = int(AOS.SampleUniform(0, 3));
 
 
 def averaged(act: str, extrinsic: str = "", special: str = "") -> list[bool]:
-    """Returns for each draw of a dynamic model, in order, whether it is known to count by its mean."""
     project = acting(HOME, act, extrinsic=extrinsic, special=special)
     (snippet,) = [part.code for part in project.skills[0].model.dynamic_model if part.code is not None]
     starts = averaged_draws(project).get(snippet, frozenset())

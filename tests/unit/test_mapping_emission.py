@@ -29,7 +29,6 @@ from aos_protocol.errors import DocumentError
 
 
 def mistakes(text: str) -> list[tuple[str, str]]:
-    """(place, message) of each mistake that keeps a mapping from being generated."""
     with pytest.raises(DocumentError) as refusal:
         emitted(text)
     assert refusal.value.code == "AOS121"

@@ -15,7 +15,6 @@ TOPIC = "topic: /battery\nmessage_type: Battery\n"
 
 
 def findings(**changed: tuple[str, str]) -> list[str]:
-    """The findings where in these files (`drive_ef`) the first text gives way to the second."""
     files = dict(BATTERY)
     for name, (find, put) in changed.items():
         file = name.replace("_", ".")

@@ -57,7 +57,6 @@ def main():
 
 
 def by_hand(problem: Problem, size: int, seed: int) -> dict[str, tuple[float, float]]:
-    """The mean discounted return of the rule and of random actions, each with its standard error."""
     seeds = [f"{seed}/{mission}" for mission in range(_MISSIONS)]
     returns = {"rule": [problem.rule(size, random.Random(each)) for each in seeds]}
     if problem.world is not None:

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from . import rules
-from .arms import arms, arms_rule
 from .cleaning import cleaning, cleaning_rule
 from .gauges import Gauges, gauges, gauges_rule
 from .greenhouse import greenhouse, greenhouse_rule
@@ -46,7 +45,6 @@ KEPT = {
     "cleaning": Problem(cleaning, 7, cleaning_rule),
     "survey": Problem(survey, 12, survey_rule, Survey),
     "questions": Problem(questions, 18, questions_rule, Questions),
-    "arms": Problem(arms, 8, arms_rule),
     "rescue": Problem(rescue, 3, rescue_rule, Rescue),
     "lock": Problem(lock, 5, lock_rule, Lock),
     "towers": Problem(towers, 10, towers_rule, Towers),

@@ -65,7 +65,6 @@ class _Noted(Search, frozen=True, kw_only=True):
 
 
 def processor_s(engine: Engine) -> float:
-    """The processor time that the engine's process, which is below its guard, has spent so far."""
     threads = [
         file for pid in descendants(engine.pid) for file in Path(f"/proc/{pid}/task").glob("*/schedstat")
     ]

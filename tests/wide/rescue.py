@@ -167,7 +167,6 @@ class Rescue(World):
 
 
 def _way(world: Rescue, jams: np.ndarray, start: int, goal: int) -> tuple[int, int]:
-    """The first direction of the shortest way by what is believed of doors, and its length in battery."""
     costs, first = {start: 0.0}, {start: 0}
     queue = deque([start])
     while queue:

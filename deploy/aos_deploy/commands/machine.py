@@ -113,7 +113,6 @@ def _package(name: str) -> Finding:
 
 
 def _simulator() -> Finding:
-    """Real robots and robots simulated by their own documents need none."""
     found = _version_of(_SIMULATOR)
     if found is None:
         advice = f"Only simulated rooms need it: {pip_install('sim')}"

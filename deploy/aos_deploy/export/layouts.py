@@ -120,7 +120,6 @@ def foxglove_layout(curves: Curves, *, has_pictures: bool) -> dict[str, Any]:
 
 
 def _stacked(panels: Sequence[str]) -> Any:
-    """Panels of equal height, one above the other."""
     if len(panels) == 1:
         return panels[0]
     share = 100 / len(panels)

@@ -98,7 +98,6 @@ class ModelAdapter:
             self._mission = mission
 
     async def _brought(self, engine: Engine, project: Project) -> _World:
-        """The world to which the missions have come, with the actions that the mission's values give it."""
         await bring_to(engine, project, self._worlds, self._cache_dir)
         actions = engine.description.actions
         world = _World(engine, project, tuple(action.name for action in actions), {})

@@ -104,7 +104,6 @@ def _locked(folder: Path, *, waits: bool = False) -> int | None:
 
 
 def _is_listened_at(path: Path) -> bool:
-    """Says whether a router is there, of an `aos-up` that takes no lock."""
     with sockets.socket(sockets.AF_UNIX) as client:
         client.settimeout(1.0)
         try:

@@ -145,7 +145,6 @@ def _opened(file: Path) -> Path:
 
 
 def _living(runs: Path | None) -> tuple[list[RunDirectory], list[RunDirectory]]:
-    """The runs that go on in a folder, by default in ./runs, and those elsewhere if no folder is named."""
     going_on = living_runs()
     here = [run for run in going_on if run.path.parent == (runs or RUNS).resolve()]
     return here, [run for run in going_on if run not in here] if runs is None else []

@@ -69,7 +69,6 @@ def _consequence(each: Consequence) -> str:
 
 
 def _terms(why: Why) -> list[str]:
-    """The lines of documents that the margin comes from, and what of it is not told apart."""
     least = _LEAST_SHARE * max((abs(term.value - term.other) for term in why.terms), default=0.0)
     telling = [term for term in why.terms if abs(term.value - term.other) > least]
     shown = [f"{term.value - term.other:+.4g} from {term.place}" for term in telling[:_SHOWN_TERMS]]

@@ -187,7 +187,6 @@ class Suite:
 
     @contextmanager
     def _telling(self, name: str) -> Iterator[None]:
-        """A fault within becomes a remark of the report."""
         try:
             yield
         except* AosError as faults:

@@ -296,7 +296,6 @@ def _print_left_out(names: tuple[str, ...]) -> None:
 
 
 def _outwards(bounds: Bounds, digits: Digits) -> tuple[str, str]:
-    """Both bounds so that they hold in the printed digits as well."""
     return digits.plain(digits.down(bounds.lower)), digits.plain(digits.up(bounds.upper))
 
 

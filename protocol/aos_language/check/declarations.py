@@ -107,7 +107,6 @@ def _check_low_level_type(name: str | None, span: Span, scope: Scope, findings: 
 
 
 def _check_cycles(compounds: Iterable[CompoundType], scope: Scope, findings: Findings) -> None:
-    """A compound cannot hold itself, not through others either."""
     for compound in compounds:
         reached: set[str] = set()
         waiting = [compound.name]

@@ -141,7 +141,6 @@ class MentionCheck:
             self._findings.error("AOS123", f"`{mention.text}` is written in {role.title}", span, hint)
 
     def _check_bound(self, mention: Mention, path: tuple[str, ...]) -> None:
-        """A reference or a pointer changes what it stands for."""
         role, root = self._block.role, mention.path[0]
         if path[0] in role.writes or path[0] not in role.reads or self._scope.is_one_state_model:
             return

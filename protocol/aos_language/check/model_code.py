@@ -45,7 +45,6 @@ def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> Non
 def _check_blocks(
     blocks: Iterable[tuple[Assignment, ...]], pieces: tuple[Block, ...], scope: Scope, findings: Findings
 ) -> None:
-    """The sections of a document, and the blocks that they consist of."""
     for block in blocks:
         _check_loops(block, scope, findings)
     around = _Around(_temporary_enums(blocks), _declared_names(pieces))

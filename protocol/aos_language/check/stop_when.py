@@ -83,7 +83,6 @@ def _neither(snippet: Snippet, findings: Findings) -> None:
 
 
 def _is_no_truth(value: ast.AST) -> bool:
-    """Returns whether an expression is certainly no truth value, whatever its names stand for."""
     if isinstance(value, ast.BinOp):
         return isinstance(value.op, _OF_NUMBERS)
     if isinstance(value, ast.UnaryOp):

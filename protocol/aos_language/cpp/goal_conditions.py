@@ -114,7 +114,6 @@ class _Reading:
             self._count(node, truth)
 
     def _want_choice(self, node: tree_sitter.Node, truth: bool) -> bool:
-        """Counts what a choice between two values depends on, if one of them is what is wanted."""
         condition = node.child_by_field_name("condition")
         first, second = (node.child_by_field_name(name) for name in ("consequence", "alternative"))
         if condition is None or first is None or second is None:
@@ -244,13 +243,11 @@ def _declared(node: tree_sitter.Node) -> Iterator[str]:
 
 
 def _is_positive(node: tree_sitter.Node) -> bool:
-    """Returns whether a value may be above 0, for all that its text tells."""
     text = text_of(node).strip("( )")
     return not text.startswith("-") and text != "false" and not re.fullmatch(r"[0.]+f?", text)
 
 
 def _is_punished(node: tree_sitter.Node) -> bool:
-    """Returns whether the block of a statement costs something."""
     block = node.parent.parent if node.parent is not None else None
     return block is not None and any(
         re.match(r"__reward\s*(?:-=|\+?=\s*-)", text_of(child)) for child in block.named_children
@@ -266,7 +263,6 @@ def _is_in_loop(node: tree_sitter.Node) -> bool:
 
 
 def _cannot_fail(node: tree_sitter.Node) -> bool:
-    """Returns whether an expression may be evaluated whatever was asked before it."""
     return not any(
         part.type in _MAY_FAIL
         or (part.type == "field_expression" and "->" in text_of(part))

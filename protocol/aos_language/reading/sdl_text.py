@@ -359,6 +359,5 @@ class _Scanner:
 
 
 def _without_comment(value: Text) -> Text:
-    """A line's value without the comment behind it and the blanks around it."""
     before = _COMMENT_AFTER_VALUE.match(value.text)
     return Text(before.group() if before else value.text, value.span).strip()

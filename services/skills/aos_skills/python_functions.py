@@ -88,7 +88,6 @@ class PythonAdapter:
             self._loop.call_soon_threadsafe(self._loop.stop)
 
     def _place(self) -> str:
-        """File and line at which the function that runs stands, or awaits something."""
         frames, awaiting = [], self._task.get_coro() if self._task is not None else None
         while (frame := getattr(awaiting, "cr_frame", None)) is not None:
             frames.append((frame, frame.f_lineno))

@@ -199,7 +199,6 @@ class MissionRunner:
         self._begin(book, running, None, earlier=await self._earlier(book, running))
 
     async def _earlier(self, book: Logbook, running: RunningModel) -> tuple[Earlier, ...]:
-        """The models that the mission had before, as far as its belief has come through them."""
         documents = self._registry.documents
         return await earlier_models(
             book.memory, running, documents, self._settings, lambda text: log.info("%s", text)
@@ -290,5 +289,4 @@ class MissionRunner:
         )
 
     def _settings_as(self, kind: type[T]) -> T:
-        """The part of the settings that has the fields of this kind."""
         return msgspec.convert(self._settings, kind, from_attributes=True)

@@ -108,7 +108,6 @@ def flooding(cell: Cell, key: str, user: str, is_question: bool, count: int) -> 
 
 
 def _ask_all(session: zenoh.Session, key: str, messages: list[bytes], count: int):
-    """Asks, some questions at a time."""
     free = threading.Semaphore(_IN_FLIGHT)
     for number in range(count):
         free.acquire()
@@ -154,7 +153,6 @@ class _Questions:
 
 
 def _is_message(payload: bytes) -> bool:
-    """Says whether it is an envelope with some message, whichever that is."""
     try:
         return isinstance(decode(payload, StopMission), StopMission)
     except BusError:

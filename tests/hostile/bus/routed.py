@@ -83,7 +83,6 @@ def opened(endpoint: str, credential: Credential | None) -> zenoh.Session:
 
 
 def round_trip(*sessions: zenoh.Session):
-    """Returns when whatever the first session has sent has come to the router, then to the next session."""
     for session in sessions:
         done = threading.Event()
         session.liveliness().get(ROUND_TRIP, Callback(_ignore, done.set, indirect=False), timeout=_PATIENCE_S)

@@ -84,7 +84,6 @@ class _Guarded:
 
 
 async def _metrics(gateway: Gateway) -> Content:
-    """The metrics of missions, for Prometheus."""
     assert gateway.metrics is not None
     return Content(await gateway.metrics.text(), EXPOSITION)
 

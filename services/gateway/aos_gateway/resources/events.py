@@ -73,7 +73,6 @@ async def stream(
 def _renew(
     upcoming: dict[asyncio.Task[Frame], bool], queue: asyncio.Queue[Frame], listing: AsyncIterator[Frame]
 ) -> None:
-    """Awaits one frame of each source."""
     if True not in upcoming.values():
         upcoming[asyncio.ensure_future(queue.get())] = True
     if False not in upcoming.values():

@@ -293,7 +293,6 @@ class RemoteRun(Run):
 
 
 async def _until_not(holds: Callable[[], bool]) -> None:
-    """Looks at files, which tell nobody that they change."""
     does_hold = True
     while does_hold:
         await asyncio.sleep(_LOOK_S)

@@ -33,7 +33,6 @@ async def start_system(shelf: RunShelf, deploy_file: Path, runs: Path, options: 
 
 
 def _reap(process: subprocess.Popen[bytes]) -> None:
-    """Takes the exit code when the process ends, so that no zombie stays."""
     loop = asyncio.get_running_loop()
     handle = os.pidfd_open(process.pid)
 

@@ -54,7 +54,6 @@ class ServedPaths:
                     self._tell()
 
     def _tell(self) -> None:
-        """All that is known of now was heard."""
         self._has_heard.set()
         self._on_change()
 

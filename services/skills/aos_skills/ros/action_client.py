@@ -127,7 +127,6 @@ class ActionClient:
             raise not_cancelled(action) from error
 
     def _doubt(self, action: str, goal_id: Fields, result_type: str) -> None:
-        """Holds a goal as one that may move the robot until it has ended or its node has left."""
         ending = self._ask(action, "get_result", {"goal_id": goal_id}, result_type, _ASKED_S)
         self._node.unended.add(action, ending, self._node.service_gone(f"{action}/_action/get_result"))
 

@@ -264,7 +264,6 @@ class _Build(msgspec.Struct, frozen=True):
         return ModelError(message, code="AOS202", hint=LIMIT_HINT, diagnostics=found)
 
     def _kept_source(self) -> Path:
-        """The emitted file at a place where it can be looked at."""
         kept = self.cache.directory / f"failed-{self.emitted.digest[:16]}.cpp"
         kept.write_text(self.emitted.cpp)
         return kept

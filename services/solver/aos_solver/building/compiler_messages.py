@@ -126,7 +126,6 @@ def _declared_with(type_name: str, code: str) -> list[str]:
 
 
 def _may_be_meant(hint: str, emitted: EmittedModel) -> bool:
-    """Returns whether a document may name what the compiler suggests, which knows all of C's library."""
     suggested = re.fullmatch(r"Did you mean `(\w+)`\?", hint)
     if suggested is None or hasattr(math, suggested[1]):
         return True

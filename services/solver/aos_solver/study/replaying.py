@@ -200,7 +200,6 @@ class ReplayedMission:
         return await self.engine.summary()
 
     async def _earlier(self, begun: messages.MissionBegun) -> tuple[Earlier, ...]:
-        """The models through which the solver of that time had brought the belief."""
         if not begun.is_retraced:
             return ()
         stretches: tuple[Stretch, ...] = ()

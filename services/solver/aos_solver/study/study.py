@@ -87,7 +87,6 @@ class Study:
     async def _asked(
         self, query: WhyQuery | WhatIfQuery | TreeQuery
     ) -> AsyncIterator[tuple[ReplayedMission, DecisionRecord]]:
-        """A replay at the decision of a question, which has it alone while it is answered."""
         async with self._asking:
             at_decision = await self._at(query.mission, query.step)
             try:

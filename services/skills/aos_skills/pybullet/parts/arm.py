@@ -105,7 +105,6 @@ class Arm:
         )
 
     def _solved(self, place: tuple[float, ...]) -> list[float]:
-        """Angles that bring the tip to a place with the hand pointing down."""
         x, y, yaw = self._base_place()
         ahead, left = place[0] - x, place[1] - y
         foot_x, foot_y, foot_z = self._mount_m

@@ -175,7 +175,6 @@ def _in_place_of_each_other(cpp: Cpp, code: str) -> Iterator[tuple[Mention, Ment
 
 
 def _key(path: tuple[str, ...]) -> tuple[str, int]:
-    """The name of a variable or field at the end of a path, and the level of what is indexed there."""
     last = _last_name(path)
     return path[last], len(path) - last - 1
 

@@ -146,7 +146,6 @@ def _variable(mention: Mention) -> str:
 
 
 def _makes_handle(mention: Mention) -> bool:
-    """Returns whether the mention's value may be looked at later, when the variable has changed."""
     is_counted = mention.method in ("size", "empty")
     is_method = bool(mention.method) and mention.method not in _READING_METHODS
     is_object = _variable(mention) == _WHOLE_STATE and mention.path[2:] in ((), ("[]",)) and not is_counted

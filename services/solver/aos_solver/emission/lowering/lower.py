@@ -309,7 +309,6 @@ def skills_looked_for(project: Project) -> tuple[str, ...]:
 
 
 def _without_absent(project: Project, absent: tuple[str, ...]) -> Project:
-    """The project without the code that runs for absent skills only, whose parameters nobody knows."""
 
     def cut(snippet: Snippet | None) -> Snippet | None:
         return snippet and replace(snippet, code=without_null(snippet.code, absent))

@@ -46,7 +46,6 @@ def object_edits(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, 
 
 
 def _within_types(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, int, str]]:
-    """Pointers among the arguments of a template or a function's type, and as what a lambda returns."""
     code = strip_comments(cpp.code)
     for name in sorted(object_types):
         pattern = rf"(?<!const )\b{name}\s*\*(?=\s*[,>)])|(?<=->){name}\s*\*|(?<=-> ){name}\s*\*"
