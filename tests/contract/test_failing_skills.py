@@ -20,12 +20,11 @@ response: jammed
 response_rule: __skill_status == 'failed' and 'jam' in __skill_error
 response: late
 response_rule: __skill_status == 'timed_out'
-response: done
-response_rule: True
 module_activation: skill
 path: /sense
 max_duration: 0.3
 """
+DONE = "response: done\nresponse_rule: True\n"
 
 
 async def with_mapping(system: System, text: str):
@@ -34,13 +33,14 @@ async def with_mapping(system: System, text: str):
     await system.state(system.registry.current.revision)
 
 
-async def test_a_rule_can_tell_how_a_skill_has_ended(system: System):
+@pytest.mark.parametrize("behind", ["project: armadillo\n", "== 'timed_out'\n"])
+async def test_a_rule_can_tell_how_a_skill_has_ended(system: System, behind):
     async def ending(call: SkillCall) -> dict[str, Any]:
         if call.id.step < 3:
             raise SkillError("the gripper is jammed" if call.id.step == 1 else "no power", code="AOS510")
         return await hang(call) if call.id.step == 3 else {}
 
-    await with_mapping(system, JAMMED)
+    await with_mapping(system, JAMMED.replace(behind, behind + DONE))
     await system.adapter.serve("/sense", ending)
     await system.adapter.serve_cancel("/sense")
     outcomes = [await system.activate("sense", step) for step in (1, 2, 3, 4)]

@@ -173,9 +173,11 @@ def ruled(first: str, second: str) -> str:
         ("count <= 1", "count > 2", "AOS118 no rule holds where count is 2: what comes back is then unknown"),
         ("a > 4 & b", "True", "AOS149 `&` binds before the comparison: this compares with `4 & b`"),
         ("a & 4 == 4 or (a > 4) & b or a == (4 | b)", "True", ""),
+        ("True", "a > 4", "AOS118 the rule for stuck never fires"),
+        ("True", "__skill_status == 'failed'", ""),
     ],
 )
-def test_rules_that_leave_a_number_out_or_compare_with_bits_are_told(first, second, told):
+def test_rules_that_leave_a_number_out_never_hold_or_compare_with_bits_are_told(first, second, told):
     mapping = ruled(first, second) + RESULT.format("count", "__input.count").replace("float", "int")
     found_ = [text for text in finding_texts(skill=TWO, mapping=mapping) if "AOS133" not in text]
     assert [text.partition(" ")[2].split(". ")[0] for text in found_] == [told] * bool(told)

@@ -196,13 +196,16 @@ def _check_ends(variable: LocalVariable, code: Snippet, tree: ast.AST, findings:
 
 
 def _check_order(rules: tuple[ResponseRule, ...], findings: Findings) -> None:
-    """The first rule that holds wins: what stands behind an always-true rule never fires."""
+    """The first rule that holds wins: behind an always-true rule only those fire that look at how a skill has
+    failed."""
     always: ResponseRule | None = None
     conditions: dict[str, ResponseRule] = {}
     for rule in rules:
         truth = _constant_truth(rule.condition)
         key = rule.condition.code if rule.condition is not None else "True"
         span = _condition_span(rule)
+        if always is not None and any(name in key for name in python_names.OF_SKILL):
+            continue
         if always is not None:
             hint = f"The rule on line {_condition_span(always).line} always holds"
             findings.warning("AOS118", f"the rule for {rule.response} never fires", span, hint)

@@ -33,7 +33,7 @@ from aos_protocol.documents import (
 )
 from aos_protocol.spelling import quoted
 
-_OF_SKILL = frozenset({"__skill_status", "__skill_error"})
+OF_SKILL = frozenset({"__skill_status", "__skill_error"})
 """The names by which rules read how a skill has failed."""
 _OF_MESSAGES = (".msg", ".srv", ".action")
 _INPUT, _PARAMETERS = "__input", "parameters"
@@ -77,7 +77,7 @@ class PythonNames(msgspec.Struct, frozen=True):
         known = _BUILT_IN_NAMES.union(imported or (), local_names, _names_of_constants(scope.low_level))
         known |= _names_of_shared(scope.shared_mapping_code)
         parameters = tuple(parameter.name for parameter in model.parameters) if model is not None else ()
-        of_end = frozenset() if mapping.monitor else _OF_SKILL
+        of_end = frozenset() if mapping.monitor else OF_SKILL
         messages = _imported_names(item for item in imports if item.module.endswith(_OF_MESSAGES)) or ()
         return cls(
             known,
@@ -292,7 +292,7 @@ def _hint(name: str, names: PythonNames) -> str:
         return "A mapping knows its local variables, not the state of the model"
     if name == _INPUT:
         return "It is there in the code of a local variable: make one of it, and name that one here"
-    if name in _OF_SKILL:
+    if name in OF_SKILL:
         return "Only rules of a skill's mapping know it"
     if name in names.parameters:
         return f"Add a local variable with `action_parameter: {name}`"

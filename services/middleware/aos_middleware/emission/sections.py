@@ -10,13 +10,13 @@ import msgspec
 from aos_middleware.emission.generated_lines import literal, word
 from aos_middleware.emission.python_code import LineOrigin, PythonCode
 from aos_middleware.emission.read_snippets import ReadSnippets, function_name
-from aos_protocol.documents import AbstractionMapping, LocalSource, LocalVariable
+from aos_protocol.documents import AbstractionMapping, LocalSource, LocalVariable, ResponseRule
 
 _OF_SKILL = ("__skill_status", "__skill_error")
 """The names by which rules read how a skill has failed."""
 
-_HAS_ENDED = "__skill_has_ended"
-"""True where a skill has not failed: the rules without the names above hold only then."""
+_HAS_ENDED, _HAS_FAILED = (f"__skill_status {test} ('succeeded', 'stopped')" for test in ("in", "not in"))
+"""Tests of whether the skill has failed, for rules without these names beside rules with them."""
 
 
 class Function(msgspec.Struct, frozen=True):
@@ -154,45 +154,50 @@ class Sections:
             None if rule.condition is None else self._snippets.expression(rule.condition)
             for rule in mapping.rules
         ]
-        read = frozenset[str]().union(*(code.reads for code in conditions if code is not None))
-        of_skill = [name for name in _OF_SKILL if name in read]
+        of_end = [
+            index for index, code in enumerate(conditions) if code and not code.reads.isdisjoint(_OF_SKILL)
+        ]
+        self.handles_failures = bool(of_end)
+        last_of_end = max(of_end, default=len(conditions))
         lines: list[str] = []
         codes: list[PythonCode] = []
-        has_assignments = False
-        for rule, code in zip(mapping.rules, conditions, strict=True):
-            assigned = [
-                (assignment, value)
-                for assignment in rule.assignments
-                if (value := self._snippets.expression(assignment.value))
-            ]
-            holds_always = code is None or code.is_true
-            is_for_ended = bool(of_skill) and (code is None or code.reads.isdisjoint(_OF_SKILL))
-            is_last = holds_always and not is_for_ended
-            if code is not None and not holds_always:
+        for index, (rule, code) in enumerate(zip(mapping.rules, conditions, strict=True)):
+            if index == last_of_end + 1:
+                lines += [f"    if {_HAS_FAILED}:", "        return None"]
+            only_ended = index < last_of_end and index not in of_end and bool(of_end)
+            test = self._test(code, only_ended=only_ended)
+            lines += test
+            lines += self._given(rule, codes, depth=2 if test else 1)
+            if code is not None and test:
                 codes.append(code)
-                before, after = (f"if {_HAS_ENDED} and (", "):") if is_for_ended else ("if ", ":")
-                lines += self._snippets.marks.expression(before, code, after, 1)
-            elif is_for_ended:
-                lines.append(f"    if {_HAS_ENDED}:")
-            depth = 1 if is_last else 2
-            for assignment, value in assigned:
-                codes.append(value)
-                has_assignments = True
-                lines += self._snippets.marks.expression(
-                    f"__assign({literal(assignment.path)}, ", value, ")", depth
-                )
-            lines.append(f"{' ' * 4 * depth}return {literal(rule.response)}")
-            if holds_always:
+            if not test:
                 break
-        if not is_last:
+        else:
             lines.append("    return None")
+        has_assignments = any("__assign(" in line for line in lines)
+        reads = ["__assign"] if has_assignments else []
+        reads += self._snippets.read_by(codes)
+        reads += [name for name in _OF_SKILL if any(name in line for line in lines)]
         summary = "The response: that of the first rule that holds."
-        reads = self._snippets.read_by(codes)
-        self.handles_failures = bool(of_skill)
-        reads += [*of_skill, *([_HAS_ENDED] if any(_HAS_ENDED in line for line in lines) else [])]
-        return Function(
-            "observe", ", ".join(["__assign", *reads] if has_assignments else reads), summary, tuple(lines)
-        )
+        return Function("observe", ", ".join(reads), summary, tuple(lines))
+
+    def _test(self, code: PythonCode | None, *, only_ended: bool) -> list[str]:
+        """The line that tests a rule, `only_ended` whether the skill has not failed, too; none where the rule
+        always holds."""
+        if code is None or code.is_true:
+            return [f"    if {_HAS_ENDED}:"] if only_ended else []
+        before, after = (f"if {_HAS_ENDED} and (", "):") if only_ended else ("if ", ":")
+        return self._snippets.marks.expression(before, code, after, 1)
+
+    def _given(self, rule: ResponseRule, codes: list[PythonCode], *, depth: int) -> list[str]:
+        """Lines that make a rule's assignments and return its response; adds what they read to `codes`."""
+        lines: list[str] = []
+        for assignment in rule.assignments:
+            if value := self._snippets.expression(assignment.value):
+                codes.append(value)
+                start = f"__assign({literal(assignment.path)}, "
+                lines += self._snippets.marks.expression(start, value, ")", depth)
+        return [*lines, f"{' ' * 4 * depth}return {literal(rule.response)}"]
 
     def _observe_text(self, name: str) -> Function:
         span = self._mapping.response_variable_span or self._mapping.span

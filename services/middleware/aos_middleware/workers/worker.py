@@ -143,8 +143,7 @@ class LoadedMapping:
         return self._holds and not held
 
     def _finish(self, result: dict[str, Any], status: str, error: str) -> str | None:
-        has_ended = status in ("succeeded", "stopped")
-        self._of_skill = {"__skill_status": status, "__skill_error": error, "__skill_has_ended": has_ended}
+        self._of_skill = {"__skill_status": status, "__skill_error": error}
         if status == "succeeded":
             self._update(self._namespace.get("RESPONSE", {}), message_from(result))
         with _watched(self._load.evaluation_s):

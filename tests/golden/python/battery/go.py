@@ -21,15 +21,15 @@ def there_from_response(__input, there):
     return there
 
 
-def observe(there, __skill_status, __skill_has_ended):
+def observe(there, __skill_status):
     """The response: that of the first rule that holds."""
     if __skill_status == 'stopped':
         return "halted"
-    if __skill_has_ended and (there):
+    if __skill_status not in ('succeeded', 'stopped'):
+        return None
+    if there:
         return "arrived"
-    if __skill_has_ended:
-        return "halted"
-    return None
+    return "halted"
 
 
 RESPONSE = {

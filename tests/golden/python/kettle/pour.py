@@ -56,14 +56,14 @@ def stop_when(is_full):
     return is_full
 
 
-def observe(__assign, success, grip, is_full, __skill_status, __skill_has_ended):
+def observe(__assign, success, grip, is_full, __skill_status):
     """The response: that of the first rule that holds."""
     if is_full and (success or __skill_status == 'stopped'):
         __assign("cup.handle", grip)
         return "poured"
-    if __skill_has_ended:
-        return "spilt"
-    return None
+    if __skill_status not in ('succeeded', 'stopped'):
+        return None
+    return "spilt"
 
 
 TOPICS = {
