@@ -97,6 +97,12 @@ async def says_it_to_none(call):
 async def nonsense(call):
     return Observed(3)
 
+async def wordless(call):
+    return Observed("done", {}, {"camera": 3})
+
+async def numberless(call):
+    return Observed("done", None)
+
 def leave(call):
     raise SystemExit(4)
 
@@ -222,6 +228,8 @@ async def test_what_goes_wrong_in_a_function_fails_that_call_alone(robot: Robot)
         ("says_too_much", {}, "AOS510", "the field made_by of a message on /scan cannot be sent"),
         ("says_it_to_none", {}, "AOS510", "the topic None is no text"),
         ("nonsense", {}, "AOS504", "the observation of /nonsense is 3, which is no word"),
+        ("wordless", {}, "AOS504", "the observation of /wordless is 3, which is no word"),
+        ("numberless", {}, "AOS504", "the answer of /numberless cannot be read: AttributeError"),
         ("drive", {"z": 1}, "AOS502", "The function takes x, y; the mapping sends z"),
         ("turn", {"angle": 1}, "AOS502", "The first argument is the call, and no field: write (call, angle)"),
     ]

@@ -2,6 +2,7 @@ from typing import Any
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import SkillResult
+from aos_protocol.spelling import error_text
 from aos_runtime.adapters.adapter import Call, Observed
 from aos_runtime.adapters.expressions import translated
 from aos_runtime.adapters.sendable import sendable
@@ -20,6 +21,9 @@ def result_of(
         return _result_of(call, binding, answer, published, adapter)
     except SkillError as error:
         raise SkillError(error.message, code="AOS504", hint=error.hint) from error
+    except Exception as error:  # Whatever a class of somebody's raises.
+        message = f"the answer of {call.path} cannot be read: {error_text(error)}"
+        raise SkillError(message, code="AOS504", hint=f"Mend the adapter {adapter}") from error
 
 
 def _result_of(
@@ -27,11 +31,12 @@ def _result_of(
 ) -> SkillResult:
     if isinstance(answer, Observed):
         what = f"the observation of {call.path}"
-        response = sendable({"response": answer.response}, what)["response"]
-        if not isinstance(response, str):
-            raise SkillError(f"{what} is {response!r}, which is no word", code="AOS510")
+        words = sendable({**answer.monitors, "": answer.response}, what)
+        for word in words.values():
+            if not isinstance(word, str):
+                raise SkillError(f"{what} is {word!r}, which is no word", code="AOS510")
         numbers = sendable(answer.numbers, what)
-        return SkillResult(call.id, {}, published, response, numbers, dict(answer.monitors))
+        return SkillResult(call.id, {}, published, words.pop(""), numbers, words)
     try:
         given = dict(answer)
     except (TypeError, ValueError) as error:
