@@ -175,11 +175,13 @@ class Calls:
 
     async def _ended(self, running: RunningCall) -> Answer:
         call, task = running.call, running.task
-        await asyncio.wait({task}, timeout=call.deadline_s)
+        given_up = asyncio.create_task(running.stuck.wait())
+        await asyncio.wait({task, given_up}, timeout=call.deadline_s, return_when=asyncio.FIRST_COMPLETED)
+        given_up.cancel()
         is_late = not task.done()
-        if is_late:
+        if is_late and not running.stuck.is_set():
             await self._stop(running, "its time is over")
-        if running.is_stuck:
+        if running.stuck.is_set():
             raise self._stuck(call)
         self._running = None
         self._outbox.send()  # Its last messages go before its answer.
@@ -230,13 +232,14 @@ class Calls:
                 running.call.cancel()
                 running.task.cancel()
             await asyncio.wait({running.task}, timeout=self._settings.cancel_s)
-            running.is_stuck = running.is_stuck or not running.task.done()
-        return not running.is_stuck
+            if not running.task.done():
+                running.stuck.set()
+        return not running.stuck.is_set()
 
     def _stuck(self, call: Call) -> AosError:
         """The process ends, so that a new one can start: what it moved is no longer known."""
         text = f"{call.path} did not stop within {self._settings.cancel_s:g} s of its cancellation"
-        hint = f"It has to end when it is cancelled; see the log of {self._settings.service}"
+        hint = "It has to end when it is cancelled; a class whose robot brakes longer has `still_moving()`"
         self._fail(SkillError(text, code="AOS504", hint=hint))
         return SkillError(text, code="AOS504", hint=f"The adapter {self._settings.service} is ended")
 

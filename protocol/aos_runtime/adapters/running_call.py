@@ -10,14 +10,14 @@ PROGRESS_EVERY_S = 0.05
 
 
 class RunningCall:
-    """The call that runs; each progress of it goes to `tell`. One that `is_stuck` was given up for good."""
+    """The call that runs; each progress of it goes to `tell`. One that is `stuck` was given up for good."""
 
     def __init__(self, call: Call, task: asyncio.Task[Answer], tell: Callable[[SkillProgress], None]) -> None:
         self.call = call
         self.task = task
         self.ended = asyncio.Event()
         self.reason = ""
-        self.is_stuck = False
+        self.stuck = asyncio.Event()
         self._tell = tell
         self._progress = 0.0
         self._reported_s = float("-inf")
