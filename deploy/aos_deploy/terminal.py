@@ -20,6 +20,7 @@ from aos_deploy.timed_lines import TimedLines
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.progress import Progress, ProgressColumn
+    from rich.table import Table
 
 _PIPED_COLUMNS = 1000
 
@@ -35,6 +36,18 @@ def console(*, stderr: bool = False, is_wide: bool = False) -> Console:
     if is_wide and not shown.is_terminal and not os.environ.get("COLUMNS"):
         shown.width = _PIPED_COLUMNS
     return shown
+
+
+def print_table(table: Table) -> None:
+    """Prints a table; in a terminal that is narrower, its rows as lines."""
+    out = console(is_wide=True)
+    wide = out.options.update(max_width=_PIPED_COLUMNS)
+    if out.width >= out.measure(table, options=wide).maximum:
+        out.print(table)
+        return
+    out.print(*filter(None, (column.header for column in table.columns)))
+    for row, cells in zip(table.rows, zip(*(each.cells for each in table.columns), strict=True), strict=True):
+        out.print(*filter(None, cells), style=row.style, highlight=False)
 
 
 def write_what_fits(stream: object) -> None:

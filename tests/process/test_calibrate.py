@@ -13,6 +13,7 @@ from places import DEPLOY
 from processes import finished
 from projects import files_project
 
+from aos_deploy.export.run_bundle import write_bundle
 from aos_lab.calibration.calibrate import Calibration, calibrate
 from aos_lab.calibration.draws import draws_of
 from aos_lab.calibration.records import RecordedMission, read_missions
@@ -179,6 +180,10 @@ def test_a_mission_that_began_with_a_kept_belief_is_not_explained_from_the_initi
     missions = read_missions(tmp_path)
     assert [bool(mission.ends_early) for mission in missions] == [False, True, True, False]
     assert "did not begin with the initial belief" in missions[1].ends_early
+    (tmp_path / "run.json").touch()
+    sent = tmp_path / "sent.aosrun"
+    write_bundle([tmp_path], sent)
+    assert read_missions(sent)[0].name == f"{sent}/{tmp_path.name}/missions/1"
 
 
 def test_the_draws_of_documents_are_found_with_their_numbers():

@@ -239,7 +239,7 @@ def test_a_file_of_a_run_is_opened_like_its_directory_and_lets_nobody_in(run: Pa
         *("run.json", "journal.db", "logs/solver.log", "pictures/step-002.png")
     }
     opened = chosen_run(target, None)
-    assert opened.path.name == "a-run"
+    assert (opened.path.name, opened.named) == ("a-run", target)
     assert not opened.is_running
     assert check_run(opened.path).violations == check_run(run).violations
     before = [row.payload for row in kept_missions(run)[0].rows()]

@@ -42,14 +42,15 @@ def test_a_narrow_terminal_cuts_no_value(columns, capsys, monkeypatch):
     assert all(len(line) <= int(columns) for line in table.splitlines())
 
 
-@pytest.mark.parametrize("columns", ["50", "100"])
+@pytest.mark.parametrize("columns", ["40", "50", "100"])
 def test_what_missions_did_stands_below_a_narrow_table(columns, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", columns)
     run = SimulatedRun(7, -1.0, -1.0, Ending.STEP_LIMIT, 1, ("listen",), ("tiger_left",))
     print_runs([run], {"runs": 1, "mean_discounted_return": -1, "mean_steps": 1}, has_goals=False)
     lines = capsys.readouterr().out.splitlines()
     assert any("step_limit" in line and "-1.0" in line for line in lines)
-    assert ("7: listen → tiger_left" in lines) == (columns == "50")
+    assert ("seed world mission steps return" in lines) == (columns == "40")
+    assert ("7: listen → tiger_left" in lines) == (columns != "100")
     assert sum("listen → tiger_left" in line for line in lines) == 1
 
 

@@ -38,7 +38,7 @@ def check(
     """
     directory = chosen_run(run, runs)
     if directory.is_running:
-        raise DeployError(f"{from_here(directory.path)} goes on", hint="Check it when it has ended")
+        raise DeployError(f"{from_here(directory.named)} goes on", hint="Check it when it has ended")
     checked = check_run(directory.path)
     found = checked.violations
     again = _replayed(directory.path) if replay else Replay(remark="not asked for")
@@ -46,7 +46,7 @@ def check(
     if as_json:
         print_json(
             {
-                "run": str(from_here(directory.path)),
+                "run": str(from_here(directory.named)),
                 "rules": RULES,
                 "violations": found,
                 "clock_set_back_s": checked.set_back_ns / 1e9,
@@ -64,7 +64,7 @@ def check(
             )
         broken = ", ".join(sorted({violation.rule for violation in found}))
         verdict = f"{count(len(found), 'violation')} of {broken}" if found else f"all {len(RULES)} rules hold"
-        typer.echo(f"{from_here(directory.path)}: {verdict}; {_text(again)}")
+        typer.echo(f"{from_here(directory.named)}: {verdict}; {_text(again)}")
     if found:
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
 

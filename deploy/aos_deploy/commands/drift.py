@@ -60,7 +60,7 @@ def _plain(model: ModelTests) -> dict[str, Any]:
 def _print(models: list[ModelTests]) -> None:
     from rich.table import Table
 
-    from aos_deploy.terminal import console
+    from aos_deploy.terminal import print_table
 
     if not models:
         typer.echo("no mission here has tests of its skills")
@@ -80,4 +80,4 @@ def _print(models: list[ModelTests]) -> None:
             numbers = (str(test.uses), f"{test.expected / test.uses:.2f}", f"{test.seen / test.uses:.2f}")
             said = f"does not hold since {place}" if place else ""
             table.add_row(test.skill, test.response, *numbers, said, style="bold" if place else "")
-        console(is_wide=True).print(table)
+        print_table(table)

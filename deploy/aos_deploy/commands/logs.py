@@ -39,7 +39,7 @@ def logs(
     """
     directory = chosen_run(run, runs)
     _refuse_unknown(services or [], directory)
-    typer.echo(f"Logs of {from_here(directory.path)}", err=True)
+    typer.echo(f"Logs of {from_here(directory.named)}", err=True)
     shown: dict[Path, _Log] = {}
     is_first = goes_on = True
     while goes_on:

@@ -38,7 +38,10 @@ class Replayed(msgspec.Struct):
 
 @command("Example: aos replay runs/latest --until 4")
 def replay(
-    run: Annotated[Path | None, typer.Argument(metavar="RUN", help="A run directory; else the last")] = None,
+    run: Annotated[
+        Path | None,
+        typer.Argument(metavar="RUN", help="A run directory, or a file of `aos export`; else the last"),
+    ] = None,
     until: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="End with the decision of this step")
     ] = None,
@@ -55,23 +58,23 @@ def replay(
     is named with its cause, and makes the exit code 1. A decision with a budget
     in time is compared by its belief alone. No mission is touched.
     """
-    directory = chosen_run(run, runs).path
-    studied = StudiedRun.open(directory, mission)
+    directory = chosen_run(run, runs)
+    studied = StudiedRun.open(directory.path, mission)
     made = studied.mission.decisions
     if until is not None and made and until > made[-1].step:
         typer.echo(f"aos: --until {until} is after the last decision, of step {made[-1].step}", err=True)
     with waiting("replaying") as told:
-        found = asyncio.run(replayed_run(studied, told, until))
+        found = asyncio.run(replayed_run(studied, from_here(directory.named), told, until))
     show(found, as_json, _print)
     if found.first_difference is not None:
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
 
 
 async def replayed_run(
-    studied: StudiedRun, told: Callable[[str], None], until: int | None = None
+    studied: StudiedRun, name: Path, told: Callable[[str], None], until: int | None = None
 ) -> Replayed:
     """Compares a mission with its replay up to the first difference, or to the decision of step `until`."""
-    found = Replayed(str(from_here(studied.run)))
+    found = Replayed(str(name))
     remade = studied.replay(told, decides=True, niceness=0)
     try:
         async for made in remade.rows(until):
@@ -124,7 +127,9 @@ def _ranges(steps: list[int]) -> str:
 
 @command("Example: aos diff $(ls -d runs/2* | tail -2)")
 def diff(
-    first: Annotated[Path | None, typer.Argument(metavar="A", help="A run directory")] = None,
+    first: Annotated[
+        Path | None, typer.Argument(metavar="A", help="A run directory, or a file of `aos export`")
+    ] = None,
     second: Annotated[Path | None, typer.Argument(metavar="B", help="Another one")] = None,
     mission: Mission = None,
     as_json: AsJson = False,
@@ -137,9 +142,9 @@ def diff(
         raise typer.BadParameter(
             "two run directories are compared. `aos runs` lists what ran here", param_hint="A B"
         )
-    opened = [StudiedRun.open(chosen_run(run, None).path, mission) for run in (first, second)]
-    found = difference(*opened)
-    show(found, as_json, lambda found: _print_difference(found, *(from_here(one.run) for one in opened)))
+    runs = [chosen_run(run, None) for run in (first, second)]
+    found = difference(*(StudiedRun.open(run.path, mission) for run in runs))
+    show(found, as_json, lambda found: _print_difference(found, *(from_here(run.named) for run in runs)))
     if found.is_any:
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
 

@@ -67,7 +67,7 @@ def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
     DeployError AOS801 if that is not one alone or the one named is none, BusError AOS605 if there is none.
     """
     if run is not None:
-        named = RunDirectory(_opened(run) if run.is_file() else run)
+        named = RunDirectory(_opened(run) if run.is_file() else run, run)
         named.read_record()
         return named
     here, elsewhere = _living(runs)

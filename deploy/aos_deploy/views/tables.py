@@ -6,7 +6,7 @@ from rich.table import Table
 from rich.text import Text
 
 from aos_deploy.printing import count
-from aos_deploy.terminal import console
+from aos_deploy.terminal import console, print_table
 from aos_deploy.views.observations import observation_text
 from aos_deploy.views.values import Digits, by_worth, proven_texts
 from aos_protocol.messages import ActionValue
@@ -107,18 +107,19 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float], *, has_g
     if out.width >= NARROW:
         out.print(_runs_table(runs, stories))
     else:
-        out.print(_runs_table(runs))
+        print_table(_runs_table(runs))
         for seed, story in stories.items():
             out.print(f"{seed}: {story}")
     mean, stderr = summary["mean_discounted_return"], summary.get("stderr")
     digits = Digits.of((mean, stderr or 0.0), 2)
     error = "" if stderr is None else f" ± {digits.plain(stderr)}"
+    missions = count(len(runs), "mission")
     endings = (
-        f"goal in {summary['goal_rate']:.0%} of {summary['runs']:.0f} missions, "
+        f"goal in {summary['goal_rate']:.0%} of {missions}, "
         f"believed in {summary['believed_goal_rate']:.0%}, "
         f"failure in {summary['failure_rate']:.0%}{_other_endings(runs)}"
         if has_goals
-        else f"{summary['runs']:.0f} missions"
+        else missions
     )
     returned = f"discounted return {digits.signed(mean)}{error}"
     out.print(f"{endings}, {returned}, {summary['mean_steps']:.1f} steps")

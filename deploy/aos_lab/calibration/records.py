@@ -7,6 +7,7 @@ from typing import Any
 
 import msgspec
 
+from aos_deploy.export.run_bundle import SUFFIX, opened_bundle
 from aos_deploy.printing import from_here
 from aos_deploy.runs.end import beginning_of
 from aos_lab.trials.trial import Trial, truth_lines
@@ -46,29 +47,32 @@ class _Kept(msgspec.Struct, frozen=True):
 
 
 def read_missions(path: Path) -> tuple[RecordedMission, ...]:
-    """Those of a run directory, of a file of missions that an experiment keeps, or of all below a folder.
+    """Those of a run directory, of a file of runs, of one that an experiment keeps, or of all in a folder.
 
     DeployError AOS801 where there are none. A folder with both has its missions in its file.
     """
-    missions = tuple(_missions(path))
+    missions = tuple(_missions(path, path))
     if not missions:
-        hint = "Name a run directory, the runs' folder, or a folder of `aos experiment run`"
+        hint = "Name a run, a folder of runs, a file of `aos export`, or a folder of `aos experiment run`"
         raise DeployError(f"{path} holds no recorded missions", hint=hint)
     return missions
 
 
-def _missions(path: Path) -> Iterator[RecordedMission]:
-    if path.name == "missions.jsonl":
+def _missions(path: Path, named: Path) -> Iterator[RecordedMission]:
+    if path.suffix == SUFFIX and path.is_file():
+        for run in opened_bundle(path):
+            yield from _missions(run, named / run.name)
+    elif path.name == "missions.jsonl":
         yield from _of_file(path)
     elif (path / "missions.jsonl").is_file():
         yield from _of_file(path / "missions.jsonl")
     elif (path / JOURNAL).is_file():
-        yield _of_run(path)
+        yield _of_run(path, str(from_here(named)))
     elif path.is_dir():
         for below in sorted(
             folder for folder in path.iterdir() if folder.is_dir() and not folder.is_symlink()
         ):
-            yield from _missions(below)
+            yield from _missions(below, named / below.name)
 
 
 def _of_file(path: Path) -> Iterator[RecordedMission]:
@@ -91,8 +95,8 @@ def _of_file(path: Path) -> Iterator[RecordedMission]:
         )
 
 
-def _of_run(run: Path) -> RecordedMission:
-    name, begun = str(from_here(run)), beginning_of(run)
+def _of_run(run: Path, name: str) -> RecordedMission:
+    begun = beginning_of(run)
     start = begun.start if begun is not None else None
     if start is not None and (start.belief != "initial" or start.given or start.idle):
         return RecordedMission(name, (), "the mission did not begin with the initial belief")

@@ -13,7 +13,7 @@ from rich.table import Table
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, writable
 from aos_deploy.printing import count, print_json
-from aos_deploy.terminal import console, interruption_told, progress
+from aos_deploy.terminal import interruption_told, print_table, progress
 from aos_deploy.views.values import Digits
 
 if TYPE_CHECKING:
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from aos_lab.calibration.estimation import DrawEstimate
 
 SHOWN_REMARKS = 5
-_TABLE_FROM = 80
-"""Columns of a terminal in which a row of the table is a line."""
 
 
 @command(
@@ -33,7 +31,9 @@ def calibrate(
     runs: Annotated[
         list[Path],
         typer.Argument(
-            metavar="RUN...", exists=True, help="Run directories, or folders of recorded missions"
+            metavar="RUN...",
+            exists=True,
+            help="Run directories, folders of recorded missions, files of `aos export`",
         ),
     ],
     bundle: Annotated[Path, typer.Argument(metavar="BUNDLE", exists=True, help="The documents")],
@@ -78,13 +78,10 @@ def calibrate(
 
 
 def print_calibration(result: Calibration) -> None:
-    """The table, as lines in a narrow terminal; what was left out, and the patch."""
+    """The table, what was left out, and the patch."""
     typer.echo(f"{count(result.missions, 'mission')}, {count(result.steps, 'step')}")
-    out, table = console(is_wide=True), Table(box=box.SIMPLE, pad_edge=False)
-    names = ("place", "outcome", "count", "records", "document", "")
-    if out.width < _TABLE_FROM:
-        out.print(*names)
-    for name in names:
+    table = Table(box=box.SIMPLE, pad_edge=False)
+    for name in ("place", "outcome", "count", "records", "document", ""):
         is_text = name in ("place", "outcome", "")
         table.add_column(name, justify="left" if is_text else "right", overflow="fold", no_wrap=not is_text)
     for estimate in result.estimates:
@@ -94,7 +91,7 @@ def print_calibration(result: Calibration) -> None:
             span = estimate.draw.span
             place = f"{span.file}:{span.line}" if number == 0 else ""
             interval = outcome.probability
-            row = (
+            table.add_row(
                 place,
                 outcome.outcome,
                 f"{outcome.count:.{0 if estimate.is_counted else 1}f} of {estimate.count:.0f}",
@@ -104,12 +101,8 @@ def print_calibration(result: Calibration) -> None:
                 digits.plain(outcome.document),
                 _verdict(estimate, number, result.missions),
             )
-            table.add_row(*row)
-            if out.width < _TABLE_FROM:
-                out.print(*filter(None, row), highlight=False)
         table.add_section()
-    if out.width >= _TABLE_FROM:
-        out.print(table)
+    print_table(table)
     for skipped in result.skipped:
         typer.echo(f"{skipped.span}: not estimated: {skipped.why}")
     for remark in result.remarks[:SHOWN_REMARKS]:

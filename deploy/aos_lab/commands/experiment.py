@@ -87,7 +87,7 @@ def run(
         raise typer.BadParameter(f"{sorted(unknown)[0]} is none of {known}", param_hint="--part")
     folder = (out or Path("experiments") / path.stem).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    place = Place(on=on, jobs=jobs, on_progress=lambda text: typer.echo(text, err=True))
+    place = Place(on=on, jobs=jobs, on_progress=lambda text: typer.echo(f"aos: {text}", err=True))
     missions = ExperimentRun(path, experiment, folder, first_seed, place)
     names = [key for key in experiment.parts if not part or key in part]
     with progress() as bar, interruption_among_missions(bar, are_kept=True):

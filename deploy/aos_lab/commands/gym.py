@@ -14,7 +14,7 @@ from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import show
-from aos_deploy.terminal import progress
+from aos_deploy.terminal import progress, waiting
 from aos_protocol.errors import DeployError
 from aos_runtime.distribution import pip_install
 
@@ -69,7 +69,8 @@ def gym(
     from aos_lab.gym import AosVectorEnv
 
     given = values_of_options(set_values)
-    environment = AosVectorEnv(bundle, worlds, mission_values=given)
+    with waiting("compiling and starting the worlds", first_s=2):
+        environment = AosVectorEnv(bundle, worlds, mission_values=given)
     try:
         rate = _rate(environment, steps, seed) if steps else None
         spaces = Spaces(

@@ -73,7 +73,7 @@ def run_tests(
                 folder=file.resolve().parent,
                 out=out / name,
                 on_trial=partial(bar.advance, task),
-                place=Place(jobs=jobs),
+                place=Place(jobs=jobs, on_progress=lambda text: typer.echo(f"aos: {text}", err=True)),
                 mission_values=values_of_options(set_values),
             )
             tested[name] = Tested.of(test, asyncio.run(missions).trials)

@@ -101,7 +101,7 @@ async def play_campaign(
             player = cluster = await RayPlayer.prepared(missions, place.on, jobs, place.on_progress)
             jobs = cluster.jobs
         else:
-            player = await _player(setting, deployment, world, out)
+            player = await _player(setting, deployment, world, out, place.on_progress)
         try:
             await _play_all(player, remaining, jobs or 1, keep)
         finally:
@@ -124,11 +124,17 @@ async def _play_all(player: _Player, seeds: Sequence[int], jobs: int, keep: Call
         raise root_cause(group) from group
 
 
-async def _player(setting: Setting, deployment: Deployment, world: Deployment | None, out: Path) -> _Player:
+async def _player(
+    setting: Setting,
+    deployment: Deployment,
+    world: Deployment | None,
+    out: Path,
+    on_progress: Callable[[str], None],
+) -> _Player:
     if setting.script:
         return await ScriptPlayer.prepared(deployment, setting.script, out)
     if setting.by == "model":
-        return await ModelPlayer.prepared(ModelMissions.of(deployment, world))
+        return await ModelPlayer.prepared(ModelMissions.of(deployment, world), on_progress)
     return SystemPlayer(deployment, out / "runs")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from contextlib import AsyncExitStack
 
 import msgspec
@@ -52,12 +53,14 @@ class ModelPlayer:
         self.world = world
 
     @classmethod
-    async def prepared(cls, missions: ModelMissions) -> ModelPlayer:
+    async def prepared(
+        cls, missions: ModelMissions, on_progress: Callable[[str], None] = lambda text: None
+    ) -> ModelPlayer:
         """Compiles the model; ModelError if that fails."""
-        model = await build_project(missions.project, cache_dir())
+        model = await build_project(missions.project, cache_dir(), on_progress)
         if missions.world is None:
             return cls(missions, model)
-        return cls(missions, model, await build_project(missions.world, cache_dir()))
+        return cls(missions, model, await build_project(missions.world, cache_dir(), on_progress))
 
     async def close(self) -> None:
         """Nothing is left of a mission."""
