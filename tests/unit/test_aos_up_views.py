@@ -333,6 +333,9 @@ def test_the_screen_that_is_left_behind_turns_no_more(monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     text = io.StringIO()
     with LiveView("armadillo", Console(file=text, width=80, height=24, force_terminal=True)) as view:
+        view(Told(f"page http://127.0.0.1:8080/#/?token={'t' * 60}"))
+        assert f"{'t' * 60}\n" in text.getvalue()
+        view(MissionState("m", "planning", 0, 0.0))
         view(DECISION)
         view(ServiceChanged("solver", "stopping", 2.0))
         assert "⠋ stopping solver ... 0 s" in text.getvalue()

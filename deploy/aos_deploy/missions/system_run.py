@@ -76,7 +76,8 @@ class SystemRun(MissionRun):
         summary = self._keep(entry, was_interrupted=False)
         took = f"{count(summary.steps, 'step')} in {summary.duration_s:.1f} s"
         what = f"{entry.mission}: {summary.ending} after {took}"
-        self._report(Told(f"{what}; `aos mission start` begins the next, Ctrl-C stops the system"))
+        # What to do comes first: the live view has one line for this.
+        self._report(Told(f"`aos mission start` begins the next, Ctrl-C stops the system; {what}"))
 
     def _keep(self, entry: MissionEntry, *, was_interrupted: bool) -> Summary:
         """Writes the summary of a mission; what ended it from outside goes into its journal."""

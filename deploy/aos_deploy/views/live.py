@@ -36,7 +36,7 @@ class Screen:
         self.title = title
         self.is_over = False
         self.services: dict[str, str] = {}
-        self.remark = "starting"
+        self.remark, self.printed = "starting", ""
         self.remark_since_s = time.monotonic()
         self.state: MissionState | None = None
         self.steps: dict[int, DecisionRecord] = {}
@@ -142,7 +142,7 @@ class Screen:
             ending = self.state.remark
             yield Text(f"{self.state.ending}: {ending}", style="bold")
         if self.is_over:
-            yield Text("" if self.remark == ending else self.remark)
+            yield Text("" if self.remark in (ending, self.printed) else self.remark)
         elif self.remark != ending:
             elapsed_s = time.monotonic() - self.remark_since_s
             text = Text(f"{self.remark} ... {elapsed_s:.0f} s").append_text(self._of_the_skill())
@@ -187,9 +187,14 @@ class LiveView:
             return  # It can come many times a second.
         is_end = isinstance(event, ServiceChanged) and event.state == "ended" and event.detail
         state = self.screen.state
-        is_news = isinstance(event, Told) and state is not None and state.phase != "ended"
+        is_news = isinstance(event, Told) and (state is None or state.phase != "ended")
         if isinstance(event, BundleReport) or is_end or is_news:
-            self._live.console.print("\n".join(lines_of(event)), markup=False, highlight=False)
+            # An address of a page is one line, however long: a terminal makes it a link as a whole.
+            self._live.console.print(
+                "\n".join(lines_of(event)), markup=False, highlight=False, soft_wrap=is_news
+            )
+            if state is None and isinstance(event, Told):
+                self.screen.printed = event.text
         self._live.refresh()
 
 

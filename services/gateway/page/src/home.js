@@ -21,7 +21,7 @@ export function Home() {
         <p>Start one here, or with <code>aos-up</code> in a terminal: it appears by itself.</p>
       </div>`}
     </div>
-    <aside class="home-aside"><${Start} /></aside>
+    ${!(problem.value && all === null) && html`<aside class="home-aside"><${Start} /></aside>`}
   </main>`;
 }
 

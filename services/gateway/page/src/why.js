@@ -86,7 +86,7 @@ function Terms({ why }) {
   all.push({ place: "later steps", margin: (why.rest ?? 0) - (why.other_rest ?? 0) });
   const most = Math.max(...all.map((each) => Math.abs(each.margin))) || 1;
   const terms = all.filter((each) => Math.abs(each.margin) > 5e-5 * most);
-  const room = Math.max(80, size - (width.value < 720 ? 70 : 250));
+  const room = Math.max(80, size - (width.value < 720 ? 78 : 250));
   const x = (value) => room / 2 + (value / most) * (room / 2 - 2);
   const address = addressOf(route.value.name, "documents", route.value.step);
   return html`<div class="terms" ref=${ref}>
