@@ -53,7 +53,7 @@ class Access(msgspec.Struct, frozen=True):
             return
         if not has_token:
             what = "reading" if method in _READING else "writing"
-            hint = "Open the address that `aos serve` prints, or send its token: `Authorization: Bearer TOKEN`"
+            hint = "Open the address that `aos serve` prints, or send `Authorization: Bearer TOKEN`"
             raise GatewayError(f"{what} needs the token", code="AOS903", hint=hint)
 
     def _is_token(self, given: str) -> bool:
