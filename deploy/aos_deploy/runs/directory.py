@@ -55,7 +55,7 @@ class RunDirectory:
     def __init__(self, path: Path, named: Path | None = None) -> None:
         self.path = path
         self.named = named or path
-        """What a user calls it: the file of `aos export` that it is from, else its path."""
+        """The name that a user gives it: the file of `aos export` that it is from, else its path."""
         self.keeps_settings = False
         """True where services have the settings that they had when the run was started."""
         self._lock: int | None = None
