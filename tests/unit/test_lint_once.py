@@ -207,7 +207,7 @@ def test_uses_of_a_parameter_that_is_declared_wrongly_are_no_mistakes(wrong):
         ("Cell& one = state.first;\none.x = 3;", 10),
         ("for (Cell* one : state_.CellObjects) one->x = 3;", 9),
         ("Cell* one = &state.first; one->x++;", 9),
-        ("auto& one = state__.first; one.x = 3;", None),
+        ("auto& one = state.first.x ? state__.first : state__.second; one.x = 3;", None),
         ("Cell& one = state.first; int x = one.x; x = 3;", None),
         ("vector<int> v; for (auto& x : v) x = 3; Cell* one = &state.first; one = &state.second;", None),
     ],

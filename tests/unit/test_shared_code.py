@@ -251,6 +251,8 @@ def test_a_misspelt_name_is_told_with_one_that_documents_have(said, name, hint):
         ("'elif' was not declared in this scope", "`elif` was not declared", "C++ writes `else if`"),
         ("use of undeclared identifier 'True'", "use of undeclared identifier `True`", "C++ writes `true`"),
         ("'TRUE' was not declared in this scope", "`TRUE` was not declared", "C++ writes `true`"),
+        ("expected ';' before 'AND'", "expected `;` before `AND`", "C++ writes `&&`"),
+        ("expected primary-expression before ')' token", "a value is missing behind `(`", ""),
         (
             "cannot convert 'const char*' to 'model::Side' in assignment",
             "cannot convert `const char*` to `Side` in assignment",
@@ -284,7 +286,7 @@ def test_a_misspelt_name_is_told_with_one_that_documents_have(said, name, hint):
             "Did you mean `push_back`?",
         ),
         (
-            "conversion from 'std::ios_base& (*)(std::ios_base&)' to 'int'\nm.cpp:{line}:6: error: could not "
+            "conversion from 'std::ios_base& (*)(std::ios_base&)' to 'int'\nm.cpp:{line}:9: error: could not "
             "convert 'std::right' from 'std::ios_base&(std::ios_base&)' to 'int'",
             "`right` was not declared",
             "",
@@ -295,7 +297,7 @@ def test_messages_are_told_in_the_documents_terms_with_what_to_write(said, messa
     emitted = emit(program())
     line = next(n for n, text in enumerate(emitted.cpp.split("\n"), 1) if "slips(AOS, 2)" in text)
     said = said.replace("{line}", str(line))
-    (error,) = read_messages(f"m.cpp:{line}:6: error: {said}\n", "m.cpp", emitted).diagnostics
+    (error,) = read_messages(f"m.cpp:{line}:9: error: {said}\n", "m.cpp", emitted).diagnostics
     assert (error.message, error.hint) == (message, hint)
 
 

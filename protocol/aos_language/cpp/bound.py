@@ -16,8 +16,8 @@ def path_bound(cpp: Cpp, declaration: Declaration) -> tuple[str, ...]:
     start = initial.start if initial is not None else loop.end() if loop is not None else None
     if start is not None and initial is not None and declaration.type.endswith("*"):
         start = start + 1 if cpp.code.startswith("&", start) else None
-    paths = (m.path for m in cpp.mentions if m.extent.start == start and m.path[0] in STATES and not m.method)
-    return next(paths, ())
+    begun = (m for m in cpp.mentions if m.extent.start == start and m.path[0] in STATES and not m.method)
+    return next((m.path for m in begun if initial is None or m.extent.end == initial.end), ())
 
 
 def bound_paths(cpp: Cpp) -> dict[str, tuple[str, ...]]:

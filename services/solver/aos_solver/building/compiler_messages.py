@@ -23,6 +23,7 @@ _UNKNOWN = re.compile(
 )
 _OF_PYTHON = {"True": "true", "False": "false", "None": "nullptr", "elif": "else if", "pass": ";"}
 _OF_PYTHON |= {"TRUE": "true", "FALSE": "false", "null": "nullptr"}
+_OF_PYTHON |= {"AND": "&&", "OR": "||", "is": "=="}
 _A_TEXT = re.compile(
     r"`const char ?(?:\*|\[\d+\])`.*`(?!const char)|`(?!const char)\w+`.*`const char ?(?:\*|\[\d+\])`"
 )
@@ -53,6 +54,8 @@ _NO_SEMICOLON = "Is a semicolon missing at the end of the line above?"
 _FAULTS = ("error", "fatal error", "Error")
 _ENDLESS = re.compile(r"expected .*`;`.* before .*")
 """g++ tells a missing semicolon where it reads on, and skips what comes before the next one."""
+_NO_VALUE = re.compile(r"expected (?:primary-)?expression\b.*")
+_OPERATOR = re.compile(r"[^\w\s;{})\]\"'`]+(?=\s*$)")
 
 
 class CompilerReport(msgspec.Struct, frozen=True):
@@ -105,6 +108,11 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
             line, start = lines[message.line - 1], message.column - 1
             unread.update(re.findall(r"[A-Za-z_]\w*", line[start:].decode()))
             hint = "" if line[:start].strip() else _NO_SEMICOLON
+            word = text.partition(" before `")[2].rstrip("`")
+            hint = f"C++ writes `{_OF_PYTHON[word]}`" if word in _OF_PYTHON else hint
+        if _NO_VALUE.fullmatch(text) and message.file.endswith(source_name):
+            before = lines[message.line - 1][: message.column - 1].decode("utf-8", "replace")
+            text = next((f"a value is missing behind `{m[0]}`" for m in _OPERATOR.finditer(before)), text)
         if name in emitted.layout.shapes:
             hint = f"Did you mean `state.{name}`?"
         elif not _may_be_meant(hint, emitted):
