@@ -103,6 +103,7 @@ def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: 
 
 
 def _interfaces(project: Project) -> str:
+    """Writes which interface files the documents ask for."""
     known = documented(project)
     lines = ["# The robot's own interfaces", ""]
     lines += ["Copy here, from the robot's workspace, what is not common to all of ROS:", ""]
@@ -137,6 +138,7 @@ def _function(path: str, mapping: AbstractionMapping) -> str:
 
 
 def _result(mapping: AbstractionMapping) -> dict[str, Any]:
+    """Fields that the mapping reads from a result, with an example of their type."""
     result: dict[str, Any] = {}
     if mapping.is_derived and (mapping.rules or mapping.response_variable):
         result["response"] = mapping.rules[0].response if mapping.rules else ""

@@ -1,3 +1,7 @@
+"""The page of a run: the address of the gateway that runs on this machine, or of one that is started for
+it.
+"""
+
 import subprocess
 import sys
 import time

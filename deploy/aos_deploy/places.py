@@ -1,3 +1,5 @@
+"""The places of AOS's files: what comes with it beside its code, and the cache of compiled models."""
+
 import os
 from pathlib import Path
 

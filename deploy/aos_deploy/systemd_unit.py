@@ -109,4 +109,5 @@ def unit_of(deployment: Deployment, user: str = "") -> str:
 
 
 def _is_below_home(*paths: Path) -> bool:
+    """Says whether any of these can be read only where home folders can."""
     return any(str(path.resolve()).startswith(("/home/", "/root/", "/run/user/")) for path in paths)

@@ -1,3 +1,5 @@
+"""Lines that tell how far work is, for logs and pipes."""
+
 import sys
 import threading
 import time

@@ -51,6 +51,7 @@ def _range(kind: Any) -> str:
 
 
 def _example(param: Any) -> float:
+    """Returns the option's own default, else half of a share, or 1, or the least number of its range."""
     if isinstance(param.default, (int, float)):
         return param.default
     least, most = getattr(param.type, "min", None), getattr(param.type, "max", None)

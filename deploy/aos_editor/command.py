@@ -1,3 +1,5 @@
+"""`aos language-server`: what an editor starts to check documents while they are written."""
+
 from aos_deploy.marked_commands import command
 
 

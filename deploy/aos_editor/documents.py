@@ -1,3 +1,6 @@
+"""The contents of an SDL text at a place: the meaning of a word, the words that may stand there, its
+outline."""
+
 from __future__ import annotations
 
 import re

@@ -184,6 +184,7 @@ def language_server() -> BundleServer:
 
 
 def _add_navigation(server: BundleServer) -> None:
+    """Adds the features that cross the files of a bundle, colours, and quick fixes."""
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     def go_to_definition(params: types.DefinitionParams) -> types.Location | None:

@@ -1,3 +1,5 @@
+"""The names of a bundle that mean the same thing, and their places, in all of its files."""
+
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum
@@ -172,6 +174,7 @@ def _declarations(assembly: Assembly) -> Iterator[Occurrence]:
 
 
 def _blocks(assembly: Assembly) -> Iterator[tuple[str, Block]]:
+    """All model code, with the skill or the monitor it belongs to."""
     if (environment := assembly.environment) is not None:
         others = msgspec.structs.replace(environment, monitors=())
         yield from (("", block) for block in environment_blocks(others))
@@ -301,6 +304,7 @@ def _mappings(assembly: Assembly, scope: Scope) -> Iterator[Occurrence]:
 
 
 def _python(mapping: AbstractionMapping) -> Iterator[Occurrence]:
+    """Local variables in the expressions and the code of a mapping, by their words."""
     conditions = (rule.condition for rule in mapping.rules)
     codes = (variable.code for variable in mapping.local_variables)
     fields = (field.value for field in mapping.activation.fields)

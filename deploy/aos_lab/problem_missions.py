@@ -71,6 +71,7 @@ class ProblemPlayer:
         )
 
     def _step(self, state: int, action: int, draws: np.random.Generator) -> tuple[int, int]:
+        """The next state and what is observed there."""
         entries = self._entries(np.array([state]), action)
         probabilities = self._model.outcomes.probabilities[entries]
         entry = entries[draws.choice(len(entries), p=probabilities / probabilities.sum())]
@@ -79,6 +80,7 @@ class ProblemPlayer:
         return int(self._model.outcomes.numbers[entry]), int(observation)
 
     def _updated(self, belief: Floats, action: int, observation: int) -> Floats:
+        """The belief after an action and what was observed, by Bayes' rule."""
         outcomes = self._model.outcomes
         support = np.flatnonzero(belief)
         entries = self._entries(support, action)
@@ -97,6 +99,7 @@ class ProblemPlayer:
         return float(likelihoods[numbers == observation].sum())
 
     def _entries(self, states: Integers, action: int) -> NDArray[np.int64]:
+        """The places of the outcomes of an action in these states, one state after the other."""
         first = self._model.outcomes.first
         rows = states * len(self._model.actions) + action
         return np.concatenate([np.arange(first[row], first[row + 1]) for row in rows])

@@ -78,6 +78,7 @@ def assemble(
 
 
 def _with_types_first(model: SkillModel, types: Set[str], findings: Findings) -> SkillModel:
+    """The skill with each parameter whose name stands before its type told, and read as meant."""
     parameters = []
     for each in model.parameters:
         if each.name in types and each.type.isidentifier() and each.type not in types:
@@ -104,6 +105,7 @@ def _without_duplicates(
 
 
 def _check_projects(documents: Mapping[str, Document], findings: Findings) -> None:
+    """All documents are of the environment's project, or else of that of the first file."""
     named = [document for document in documents.values() if document.project]
     leading = next((d for d in named if d.kind is DocumentKind.ENVIRONMENT), next(iter(named), None))
     others = [d for d in named if d is not leading]

@@ -106,6 +106,7 @@ def _of_result(name: str, field: str, span: Span, kind: str = "") -> LocalVariab
 
 
 def _responses(model: SkillModel, environment: Environment | None) -> dict[str, Span]:
+    """Returns the responses that the dynamic model gives and declares nowhere, in the order of the text."""
     known = {*SPECIAL_NAMES, *_NO_RESPONSES, *(parameter.name for parameter in model.parameters)}
     if environment is not None:
         known |= {value for enum in environment.enums for value in enum.values}
@@ -139,6 +140,7 @@ def _responses(model: SkillModel, environment: Environment | None) -> dict[str, 
 
 
 def _values_of(variable: str, cpp: Cpp) -> Iterator[tuple[str, int]]:
+    """The lone names that a variable is set to, with their offsets in the snippet."""
     extents = [declaration.initial for declaration in cpp.declarations if declaration.name == variable]
     extents += [mention.assigned for mention in cpp.mentions if mention.path == (variable,)]
     for extent in extents:
@@ -166,6 +168,7 @@ def _kept_names(
 
 
 def _assigned_to(variable: str, cpp: Cpp) -> Iterator[Extent]:
+    """The extents of what a variable or a part of it is set to, and of the calls of its methods."""
     extents = [declaration.initial for declaration in cpp.declarations if declaration.name == variable]
     extents += [mention.assigned for mention in cpp.mentions if mention.path[0] == variable]
     extents += [call.extent for call in cpp.calls if call.name[:1] == (variable,) and len(call.name) > 1]

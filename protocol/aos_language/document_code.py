@@ -1,3 +1,5 @@
+"""The code of a document's section, snippet by snippet, as it is read."""
+
 import re
 from collections.abc import Collection, Iterable, Iterator
 

@@ -1,3 +1,5 @@
+"""A push of some files over the files a project has: a document replaces the one of its kind and name."""
+
 from collections.abc import Mapping
 
 import msgspec

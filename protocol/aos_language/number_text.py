@@ -1,3 +1,6 @@
+"""Numbers as text."""
+
+
 def is_number(text: str) -> bool:
     """Returns whether Python reads the text as a number."""
     try:

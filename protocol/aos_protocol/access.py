@@ -156,6 +156,7 @@ def _includes(pattern: list[str], key: list[str]) -> bool:
 
 
 def _keys(key: str, act: Act, party: Party) -> list[tuple[str, bool]]:
+    """The expressions that a row's key stands for, each with whether it is denied."""
     is_own = act in ("answers", "tells", "announces")
     if not is_own:
         for name in ("<adapter>/<version>/<instance>/<path>", "<adapter>/<reason>/<path>"):

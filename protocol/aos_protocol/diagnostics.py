@@ -89,6 +89,7 @@ def _is_shown(character: str) -> bool:
 
 
 def _window(excerpt: str, column: int) -> tuple[str, int]:
+    """The part of a long line around a column, and the column in it."""
     if len(excerpt) <= _EXCERPT_WIDTH:
         return excerpt, column
     start = max(0, min(column - _EXCERPT_WIDTH // 2, len(excerpt) - _EXCERPT_WIDTH))

@@ -395,6 +395,7 @@ def _found(missions: Missions, wanted: str | int) -> MissionEntry:
 
 
 def _place_of(run: Path, user: str) -> tuple[_Place, Credential | None]:
+    """The place of a run's bus, and who somebody is on it."""
     run = run.resolve()
     try:
         place = msgspec.json.decode((run / "run.json").read_bytes(), type=_Place)

@@ -75,6 +75,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
 
 
 def _not_looked_at(place: Span, extent: str) -> Diagnostic:
+    """A search that ended for its time in no code of the documents."""
     message = f"the search for what the actions lead to has ended: it took more than {MAX_CPU_S:g} s"
     hint = (
         f"{extent}. Nothing is told of goals and preconditions that nothing leads to, nor of faults behind it"
@@ -92,6 +93,7 @@ def _reached(diagnostic: Diagnostic, cheaper: str) -> Diagnostic:
 
 
 def _goal_span(environment: Environment) -> Span | None:
+    """The first special state that may be a goal."""
     for special in environment.special_states:
         code = " ".join(part.code.code for part in special.code if part.code is not None)
         is_goal = special.is_goal and not special.is_failure

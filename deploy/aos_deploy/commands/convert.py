@@ -43,6 +43,7 @@ def convert_bundle(
 
 
 def _write(folder: Path, texts: dict[str, str]) -> None:
+    """All files, into a directory that is new or empty."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         if any(folder.iterdir()):

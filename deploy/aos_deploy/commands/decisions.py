@@ -87,12 +87,14 @@ def decisions(
 
 
 def _tell_no_end(directory: RunDirectory) -> None:
+    """Says on standard error that a mission has no end, where nobody is there who could give it one."""
     if not directory.is_running and directory.read_summary() is None:
         what = f"aos: {directory.path.name} was killed before its mission ended"
         typer.echo(f"{what}. `aos-up --resume {from_here(directory.path)}` takes it up", err=True)
 
 
 def _reason(event: DecisionRecord | MissionState) -> list[str]:
+    """Returns the lines below a decision that say why that planner made it."""
     if not isinstance(event, DecisionRecord) or event.outcome is not None or not event.why:
         return []
     if not event.planner:

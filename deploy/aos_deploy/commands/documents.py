@@ -116,6 +116,7 @@ def _files_of(bundles: Iterable[Path]) -> tuple[dict[str, bytes], list[Diagnosti
 
 
 def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) -> tuple[Diagnostic, ...]:
+    """Generates and compiles the model and returns what that finds."""
     import asyncio  # These would make the other commands start slower.
 
     from aos_deploy.bundles.pictures import picture_findings
@@ -207,6 +208,7 @@ def _python_modules(project: Project, only: str) -> str:
 
 
 def _solver_stage(project: Project, stage: Stage, bundle: Path) -> object:
+    """The lowered model, or its C++ as text."""
     from aos_solver.emission.emit import emit  # As above.
     from aos_solver.emission.lowering.lower import lower
 

@@ -113,6 +113,7 @@ def _package(name: str) -> Finding:
 
 
 def _simulator() -> Finding:
+    """Real robots and robots simulated by their own documents need none."""
     found = _version_of(_SIMULATOR)
     if found is None:
         advice = f"Only simulated rooms need it: {pip_install('sim')}"
@@ -128,6 +129,7 @@ def _version_of(package: str) -> str | None:
 
 
 def _compiler() -> Finding:
+    """The first of $CXX, g++, clang++ that says its version, else the ziglang wheel."""
     for name in (os.environ.get("CXX", ""), "g++", "clang++"):
         path = shutil.which(name.split()[0]) if name.split() else None
         line = _first_line([path, "--version"]) if path else ""
@@ -188,6 +190,7 @@ def _cache() -> Finding:
 
 
 def _sandbox() -> Finding:
+    """The confinement of documents' code, tried with a program that looks for a file of this user."""
     support = sandbox_support()
     if not support.is_whole:
         advice = "Documents run only with trust: documents in the deploy file, or --trust-documents"

@@ -149,6 +149,7 @@ def unit(
 
 
 def _copy(deploy: Path, target: Path) -> None:
+    """A deploy file and what it names, at the same places beside it, into a directory that is new."""
     named = read_deploy_file(deploy)
     found = [deploy, *named.bundles, *(path for path in (named.world, named.policy) if path is not None)]
     given = [named.file.serve, *(plan.options for plan in named.adapters)]
@@ -179,6 +180,7 @@ def _check_name(name: str, kind: str) -> None:
 
 
 def _filled(kind: str, **names: str) -> dict[str, str]:
+    """The templates of a kind by file name, with the names put in."""
     folder = files("aos_deploy") / "templates" / kind
     return {
         template.name: Template(template.read_text("utf-8")).substitute(names)
@@ -187,12 +189,14 @@ def _filled(kind: str, **names: str) -> dict[str, str]:
 
 
 def _in_dialect(texts: dict[str, str], dialect: Dialect) -> dict[str, str]:
+    """The templates are in SDL."""
     if dialect is Dialect.SDL:
         return texts
     return convert({file: text.encode() for file, text in texts.items()}, dialect)[0]
 
 
 def _write(folder: Path, texts: dict[str, str]) -> None:
+    """All files, or none if one of them is there already."""
     there = [file for file in sorted(texts) if (folder / file).exists()]
     if there:
         hint = "Nothing was written; take another name"

@@ -98,6 +98,7 @@ def plan(
 
 
 def _suppositions(given: Iterable[str]) -> list[str]:
+    """The suppositions, in place of files the lines that they have."""
     found: list[str] = []
     for text in given:
         if Path(text).is_file():

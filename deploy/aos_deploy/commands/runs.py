@@ -130,6 +130,7 @@ def _ending_without_summary(run: RunDirectory, missions: tuple[Entry, ...]) -> s
 
 
 def _mission(run: RunDirectory, number: int, record: RunRecord) -> Entry:
+    """A mission of a system that stays."""
     folder, summary = mission_folder(run.path, number), run.read_summary(number)
     ending = summary.ending if summary else ending_without_summary(folder)
     if run.is_running and ending in _UNENDED:

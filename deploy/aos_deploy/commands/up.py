@@ -133,12 +133,14 @@ def up(
 
 
 def _end(error: AosError | None, code: int) -> NoReturn:
+    """Prints the fault that a run has ended by, if any, and ends the command."""
     if error is not None:
         print_fault("aos-up", error)
     raise typer.Exit(code)
 
 
 def _refuse_beside_resume(**options: object) -> None:
+    """BadParameter for an option that a run which goes on has already."""
     given = [f"--{name}" for name, value in options.items() if value is not None]
     if given:
         text = "a run that goes on has what it was started with"
@@ -150,6 +152,7 @@ def _title(deployment: Deployment) -> str:
 
 
 def _refuse_beside_serve(serve: str | None, **options: bool) -> None:
+    """BadParameter for an option that needs a mission, where none runs."""
     given = [f"--{name}" for name, is_given in options.items() if is_given]
     if given and serve is not None:
         raise typer.BadParameter("no mission runs that others could follow", param_hint=", ".join(given))

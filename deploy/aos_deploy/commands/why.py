@@ -97,6 +97,7 @@ def _found(
     ask: Callable[[AosClient], Awaitable[T]],
     study: Callable[[Study], Awaitable[T]],
 ) -> T:
+    """The answer of the system that runs, or else from the directory of the run."""
     with waiting("looking into the decision", first_s=5.0):
         if not system.is_at_endpoint:
             directory = chosen_run(system.run, system.runs)

@@ -1,3 +1,5 @@
+"""The deploy file's `adapters:` and `bind:`: which adapters there are, and what each of them serves."""
+
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -124,6 +126,7 @@ _HOW_TO_NAME = "Write it as adapters: {NAME: {command: [PROGRAM, ARGUMENT]}}, an
 
 
 def _named(node: YamlNode | None, findings: Findings) -> dict[str, AdapterPlan]:
+    """The adapters that are given a name and options."""
     plans = {}
     for name, item in node.entries.items() if isinstance(node, YamlMap) else ():
         assert isinstance(node, YamlMap)
@@ -182,6 +185,7 @@ def _plan(name: str, node: YamlNode, where: Span, findings: Findings) -> Adapter
 def _bound(
     path: str, node: YamlNode, named: dict[str, AdapterPlan], where: Span, findings: Findings
 ) -> tuple[str, Binding] | None:
+    """The adapter's name and how the path is bound to it."""
     if path != EVERYTHING_ELSE and not _PATH.fullmatch(path):
         findings.error(
             "AOS106", f"{path!r} is not an activation path", where, 'Write it as /pick, or "*" for all others'

@@ -1,3 +1,5 @@
+"""The values of mission parameters: from the deploy file, or an option, to the project that they are for."""
+
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any

@@ -106,6 +106,7 @@ def check_endpoint(endpoint: str) -> None:
 
 
 def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) -> Deployment:
+    """The paths made absolute, and what the schema alone cannot see checked."""
     folder = path.parent
     if not _NAME.fullmatch(file.robot):
         hint = "Use letters, digits, - and _"

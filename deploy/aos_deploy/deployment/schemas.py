@@ -14,6 +14,7 @@ from aos_language.schemas.documents import gsdl_schema, plp_schema
 
 
 def _deploy_schema() -> dict[str, Any]:
+    """A JSON Schema (draft 2020-12) for the YAML file that aos-up takes."""
     # Through JSON, for the defaults that are tuples.
     schema: dict[str, Any] = json.loads(json.dumps(msgspec.json.schema(DeployFile)))
     parts = schema["$defs"]

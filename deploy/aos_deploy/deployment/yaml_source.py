@@ -185,6 +185,7 @@ class _Reader:
 
 
 def _span(file: str, mark: Any) -> Span:
+    """The place of a position mark of the YAML reader."""
     return Span(file, mark.line + 1, mark.column + 1)
 
 

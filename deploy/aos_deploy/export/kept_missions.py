@@ -1,3 +1,5 @@
+"""The missions of a run as they are kept: each row of their journals, with its message."""
+
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple

@@ -67,6 +67,7 @@ def curves_of(records: Iterable[DecisionRecord]) -> Curves:
 
 
 def _add_number(numbers: list[tuple[str, ...]], variable: str) -> None:
+    """Adds the median of a number and what 90 % lie between."""
     paths: list[tuple[str, ...]] = [(BELIEF, "quantiles", variable, each) for each in ("p05", "p50", "p95")]
     if paths[0] not in numbers:
         numbers.extend(paths)
@@ -120,6 +121,7 @@ def foxglove_layout(curves: Curves, *, has_pictures: bool) -> dict[str, Any]:
 
 
 def _stacked(panels: Sequence[str]) -> Any:
+    """Panels of equal height, one above the other."""
     if len(panels) == 1:
         return panels[0]
     share = 100 / len(panels)

@@ -137,6 +137,7 @@ def _has_any(path: Path, passwords: Sequence[str]) -> bool:
 
 
 def _database(path: Path) -> bytes:
+    """Returns a database as one file, with what is still in its log."""
     with tempfile.TemporaryDirectory() as staging:
         copy = Path(staging) / path.name
         try:

@@ -1,3 +1,5 @@
+"""Tables as files: CSV, or Parquet. The only import of pyarrow."""
+
 import csv
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
@@ -53,6 +55,7 @@ def write_parquet(rows: Iterable[Row], folder: Path) -> dict[str, int]:
 
 
 def _batches(rows: Iterable[Row]) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    """The rows of each table together, so many at once."""
     kept: dict[str, list[dict[str, Any]]] = {table: [] for table in TABLES}
     for row in rows:
         kept[row.table].append(row.cells)

@@ -1,3 +1,5 @@
+"""The whole check: every row of a run against every rule."""
+
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, Protocol
 

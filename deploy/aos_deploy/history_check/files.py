@@ -1,3 +1,5 @@
+"""The files of a run for the check of its history."""
+
 from pathlib import Path
 
 import msgspec

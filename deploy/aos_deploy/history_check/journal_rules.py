@@ -1,3 +1,5 @@
+"""The rules for a mission's journal: one pass over its rows."""
+
 import hashlib
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -89,6 +91,7 @@ class JournalRules:
             self.end_ns = row.stamp_ns
 
     def _take_model(self, message: messages.MissionBegun | messages.ModelAdopted, found: Found) -> None:
+        """A belief that was handed over from another model is not that which a new solver replays."""
         if isinstance(message, messages.ModelAdopted):
             self._is_handed_over |= message.by != "replay"
             return

@@ -1,3 +1,5 @@
+"""The rules that every history of a run has to hold to, and their violations."""
+
 import msgspec
 
 RULES = {

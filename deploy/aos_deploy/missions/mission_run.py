@@ -123,6 +123,7 @@ class MissionRun:
         return summary
 
     def _settled(self, run: RunDirectory, *, was_interrupted: bool) -> Summary:
+        """The summary of a run whose processes are gone."""
         verdict, lacking = settled(
             run.path, self._heard, stopped_by=self.error, was_interrupted=was_interrupted
         )

@@ -87,6 +87,7 @@ def _missing(state: MappingState, project: ProjectRevision) -> bool:
 
 
 async def _served_by_several(supervisor: Supervisor) -> list[str]:
+    """A remark for each path that several processes serve."""
     by_path: dict[str, list[str]] = {}
     for server in await served(supervisor.bus, supervisor.keys):
         by_path.setdefault(server.path, []).append(server.who)
@@ -98,6 +99,7 @@ async def _served_by_several(supervisor: Supervisor) -> list[str]:
 
 
 async def _lacking(supervisor: Supervisor) -> list[str]:
+    """A remark for each path of which an adapter tells why it does not serve it."""
     found = sorted(await lacks(supervisor.bus, supervisor.keys))
     return [f"{lack.path} is not served yet: {lack.adapter} says: {lack.reason}" for lack in found]
 
@@ -172,6 +174,7 @@ def unbound_adapters(deployment: Deployment) -> tuple[str, ...]:
 
 
 def _hint(supervisor: Supervisor, deployment: Deployment, away: Collection[str]) -> str:
+    """The bindings, and what is to be seen of the adapters that are to serve the paths that are away."""
     bound = [f"{path} to {plan.name}" for plan in deployment.adapters for path in plan.bind]
     bound += [f"all others to {plan.name}" for plan in deployment.adapters if plan.serves_others]
     meant = [plan for plan in deployment.adapters if plan.serves_others or set(plan.bind) & set(away)]

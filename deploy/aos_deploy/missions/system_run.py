@@ -70,6 +70,7 @@ class SystemRun(MissionRun):
         return entry is not None and entry.ended_ns > 0
 
     def _take_end(self, state: MissionState) -> None:
+        """Keeps the summary of a mission that has ended, once."""
         entry = entry_of(self._run.path, state.mission)
         if entry is None or self._run.read_summary(entry.number) is not None:
             return
@@ -113,6 +114,7 @@ class SystemRun(MissionRun):
         return {"first_decision_s": first_s, "duration_s": duration_s}
 
     def _settled(self, run: RunDirectory, *, was_interrupted: bool) -> Summary:
+        """The summary of the system, once each mission has its own."""
         entries: tuple[MissionEntry, ...] = ()
         try:
             entries = entries_of(run.path)
@@ -141,6 +143,7 @@ class SystemRun(MissionRun):
 
 
 def _durations(journal: Path, begun_ns: int) -> dict[str, float | None]:
+    """Returns the seconds to the first decision, and to the last row of a mission's journal."""
     with Journal.read(journal) as rows:
         first = next(rows.walk(DECISION), None)
         last = next(rows.walk(since=rows.last), None)

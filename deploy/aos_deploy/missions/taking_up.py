@@ -67,6 +67,7 @@ def worlds_text(deployment: Deployment) -> str:
 
 
 def _of_mission(run: RunDirectory) -> tuple[bool, str]:
+    """Says whether the mission had begun, and how it has ended, if it has."""
     path = run.path / JOURNAL
     if not path.exists():
         return False, ""  # It died before the solver was there.

@@ -85,6 +85,7 @@ class ModelAdapter:
             await self._world.engine.close()
 
     async def _turn_to(self, mission: str) -> None:
+        """Turns to the world of another mission, in a system that stays."""
         number = number_in(self._host.run_dir.name, mission)
         if mission == self._mission or number is None:
             return
@@ -98,6 +99,7 @@ class ModelAdapter:
             self._mission = mission
 
     async def _brought(self, engine: Engine, project: Project) -> _World:
+        """The world to which the missions have come, with the actions that the mission's values give it."""
         await bring_to(engine, project, self._worlds, self._cache_dir)
         actions = engine.description.actions
         world = _World(engine, project, tuple(action.name for action in actions), {})

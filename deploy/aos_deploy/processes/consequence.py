@@ -1,3 +1,5 @@
+"""The consequence of a program that ends by itself: started again, given up, ignored, or the run ends."""
+
 import asyncio
 from collections.abc import Iterable
 

@@ -45,6 +45,7 @@ def _take(name: socket.socket, address: str, port: int) -> None:
 
 
 def _take_any(name: socket.socket, address: str) -> int:
+    """A port below those that the kernel gives to outgoing connections, which could take it meanwhile."""
     end = int(_PORT_RANGE.read_text().split()[0]) if _PORT_RANGE.exists() else 0
     candidates = range(_LOWEST_PORT, end) if end > _LOWEST_PORT else range(_LOWEST_PORT, 2**16)
     for port in random.SystemRandom().sample(candidates, _ATTEMPTS):

@@ -1,3 +1,5 @@
+"""The services of a system, as aos-up starts them: in which order, with which settings, within what time."""
+
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -157,6 +159,7 @@ def _own(deployment: Deployment, name: str, part: ProgramPart) -> Program:
 
 
 def _played(deployment: Deployment) -> dict[str, Any]:
+    """Returns the paths of the skills that are played by their documents, for the middleware."""
     plans = [plan for plan in deployment.adapters if plan.kind_name == MODEL]
     paths = [path for plan in plans for path in (*plan.bind, *(["*"] if plan.serves_others else []))]
     return {"played": paths, "elsewhere": [path for plan in plans for path in plan.elsewhere]}

@@ -58,6 +58,7 @@ def connected(host: str, port: str, for_s: float = _FOR_S) -> socket.socket:
 
 
 def _begun(address: tuple[Any, ...]) -> socket.socket:
+    """A connection that is about to be made."""
     family, kind, protocol, _, place = address
     attempt = socket.socket(family, kind, protocol)
     try:

@@ -267,6 +267,7 @@ class Supervisor:
                     self._note_silence(running, serves_less=serving is not None)
 
     def _command_behind(self, serving: Serving) -> RunningProgram | None:
+        """The command that serves a path, by its name in the token or by what is bound to it."""
         for running in self._running.values():
             program = running.program
             is_meant = program.name == serving.adapter or serving.path in program.paths
@@ -335,6 +336,7 @@ class Supervisor:
         self._changed(running.program.name, state)
 
     async def _watch(self, running: RunningProgram) -> None:
+        """Raises when the process ends though nobody stopped it, and neither starts again nor is given up."""
         program = running.program
         while True:
             status = await running.child.wait()
@@ -433,4 +435,5 @@ def _end_at_once(running: RunningProgram) -> None:
 
 
 def _folder_of(program: Program) -> Path:
+    """The folder of this machine that paths of a program's `ready` are relative to."""
     return Path() if program.host else Path(program.folder or "")

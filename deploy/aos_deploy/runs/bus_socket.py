@@ -38,6 +38,7 @@ def place_of_socket(run: Path) -> Path:
 
 
 def _made_in(folder: Path) -> Path:
+    """A new folder whose lock this process holds, where there are locks."""
     while True:
         made = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
         lock = _locked(made, waits=True)
@@ -82,6 +83,7 @@ def _remove_if_left(folder: Path) -> None:
 
 
 def _folders() -> Iterator[Path]:
+    """The folders in which a socket's own folder may be, the first ones first."""
     named = (os.environ.get("XDG_RUNTIME_DIR", ""), tempfile.gettempdir(), "/tmp")
     yield from dict.fromkeys(Path(name) for name in named if name)
 
@@ -104,6 +106,7 @@ def _locked(folder: Path, *, waits: bool = False) -> int | None:
 
 
 def _is_listened_at(path: Path) -> bool:
+    """Says whether a router is there, of an `aos-up` that takes no lock."""
     with sockets.socket(sockets.AF_UNIX) as client:
         client.settimeout(1.0)
         try:

@@ -1,3 +1,5 @@
+"""Two missions beside each other: their settings, and the first step that differs."""
+
 import msgspec
 
 from aos_deploy.runs.directory import RunDirectory

@@ -61,6 +61,7 @@ def _fold(models: dict[str, ModelTests], mission: KeptMission) -> None:
 
 
 def _begin(models: dict[str, ModelTests], said: DriftTests) -> None:
+    """Begins with the tests of a row, and without what they have behind them."""
     blank = tuple(DriftTest(test.skill, test.response) for test in said.tests)
     tests = DriftTests(said.model_digest, said.count, blank)
     models.setdefault(said.model_digest, ModelTests(tests))

@@ -138,6 +138,7 @@ def _is_named(run: RunDirectory, name: str) -> bool:
 
 
 def _opened(file: Path) -> Path:
+    """The directory of the run in a file, unpacked."""
     runs = opened_bundle(file)
     if len(runs) > 1:
         raise DeployError(f"{file} has {len(runs)} runs", hint=f"Name one of {', '.join(map(str, runs))}")
@@ -145,6 +146,7 @@ def _opened(file: Path) -> Path:
 
 
 def _living(runs: Path | None) -> tuple[list[RunDirectory], list[RunDirectory]]:
+    """The runs that go on in a folder, by default in ./runs, and those elsewhere if no folder is named."""
     going_on = living_runs()
     here = [run for run in going_on if run.path.parent == (runs or RUNS).resolve()]
     return here, [run for run in going_on if run not in here] if runs is None else []

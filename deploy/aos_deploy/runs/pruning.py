@@ -1,3 +1,5 @@
+"""Old runs removed from their folder: the newest stay, and whatever goes on."""
+
 import re
 import shutil
 from pathlib import Path

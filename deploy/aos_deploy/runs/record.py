@@ -1,3 +1,5 @@
+"""The record of a run, by which it can be found: `run.json`."""
+
 from __future__ import annotations
 
 import os

@@ -1,3 +1,5 @@
+"""The end of a run as it remains: its `summary.json`."""
+
 import msgspec
 
 

@@ -1,3 +1,5 @@
+"""The live view of a mission in a terminal."""
+
 import io
 import threading
 import time
@@ -159,6 +161,7 @@ class Screen:
         return Text("  ").append_text(progress_text(progress)) if is_of_this_step else Text()
 
     def _step_remark(self, shown: list[int]) -> Iterator[Text]:
+        """Yields the remark of the newest of the steps that has one."""
         remarked = [step for step in shown if self.steps[step].remark]
         if remarked:
             text = f"step {remarked[-1]}: {self.steps[remarked[-1]].remark}"
@@ -199,5 +202,6 @@ class LiveView:
 
 
 def _cells(table: Table) -> int:
+    """The width that a table takes where nothing limits it."""
     wide = Console(width=1000, file=io.StringIO())
     return wide.measure(table).maximum

@@ -97,6 +97,7 @@ def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
 
 
 def _risks(record: DecisionRecord) -> dict[str, str]:
+    """Returns for each action the most that it risks of any constraint, and whether that is too much."""
     if not record.constraints:
         return {}
     texts = {}
@@ -164,6 +165,7 @@ def _values_text(marginal: Marginal) -> str:
 
 
 def _fitting(actions: list[str], width: int) -> list[str]:
+    """The actions as they are, or without their parameters' names, or with their middle left out."""
     if max(map(len, actions), default=0) > width:
         actions = [brief_action(action) for action in actions]
     width = max(width, 8)

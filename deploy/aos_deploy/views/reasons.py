@@ -55,6 +55,7 @@ def _expected(why: Why) -> str:
 
 
 def _update(why: Why) -> str:
+    """Tells what the belief update took after the outcome, where that was long."""
     if why.update_s < _LONG_UPDATE_S:
         return ""
     effort = f": {why.update_effort}" if why.update_effort else ""
@@ -69,6 +70,7 @@ def _consequence(each: Consequence) -> str:
 
 
 def _terms(why: Why) -> list[str]:
+    """The lines of documents that the margin comes from, and what of it is not told apart."""
     least = _LEAST_SHARE * max((abs(term.value - term.other) for term in why.terms), default=0.0)
     telling = [term for term in why.terms if abs(term.value - term.other) > least]
     shown = [f"{term.value - term.other:+.4g} from {term.place}" for term in telling[:_SHOWN_TERMS]]
@@ -102,6 +104,7 @@ def _better_elsewhere(why: Why) -> str:
 
 
 def _side(flip: Flip) -> str:
+    """`below 0.412`, the side on which the choice is another one."""
     rises = (flip.low + flip.high) / 2 > flip.now
     if flip.is_checked and (flip.high >= 1 if rises else flip.low <= 0) and flip.high - flip.low <= 1e-3:
         return "1" if rises else "0"

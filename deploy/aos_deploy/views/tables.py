@@ -1,3 +1,5 @@
+"""Tables for people: the value of each action, and simulated missions."""
+
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 
@@ -134,6 +136,7 @@ def _other_endings(runs: Collection[SimulatedRun]) -> str:
 
 
 def _runs_table(runs: Collection[SimulatedRun], stories: Mapping[int, str] | None = None) -> Table:
+    """A row for each mission, with what it did by its seed where that stands in the table."""
     table = Table()
     for name in ("seed", "world", "mission", "steps", "return"):
         is_text = name in ("world", "mission")

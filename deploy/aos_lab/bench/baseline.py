@@ -77,6 +77,7 @@ def _processor() -> str:
 
 
 async def _output(command: list[str], deadline_s: float) -> tuple[int, bytes, bytes]:
+    """Exit status, standard output and standard error of a command."""
     child = await Child.start(command, stdout=PIPE, stderr=PIPE)
     try:
         async with asyncio.timeout(deadline_s):

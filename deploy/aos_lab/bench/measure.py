@@ -1,3 +1,5 @@
+"""The measurements of our own engine: rates, and returns of whole missions."""
+
 from collections.abc import Callable, Mapping
 
 from aos_lab.bench.problems import Problem

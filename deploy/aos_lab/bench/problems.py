@@ -58,6 +58,7 @@ def problems_named(names: list[str]) -> list[Problem]:
 
 
 def _with_documents(problem: Problem) -> Problem:
+    """The problem with its bundle, which is written where it does not come along."""
     if problem.bundle.is_dir() or problem.name not in LAYOUTS:
         return problem
     folder = cache_dir() / "bundles" / problem.name

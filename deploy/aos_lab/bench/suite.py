@@ -132,6 +132,7 @@ class Suite:
             self._rows.append(row)
 
     async def _returns(self, problem: Problem, planner: Planner, project: Project, metric: str) -> None:
+        """Missions with the seeds from `seed` on, dealt out to the jobs."""
         seed, runs = self._effort.seed, self._effort.runs_of(problem)
         label = f"{problem.name}: {metric}"
 
@@ -187,6 +188,7 @@ class Suite:
 
     @contextmanager
     def _telling(self, name: str) -> Iterator[None]:
+        """A fault within becomes a remark of the report."""
         try:
             yield
         except* AosError as faults:

@@ -1,3 +1,5 @@
+"""The benchmark's report as a table for people, and as Markdown for a page."""
+
 from collections.abc import Iterator
 
 from rich.box import SIMPLE_HEAD
@@ -50,6 +52,7 @@ def _header(report: Report) -> list[str]:
 
 
 def _rows(report: Report) -> Iterator[list[str]]:
+    """One for each of our rows, with the figure that it is compared with."""
     for row in report.rows:
         if row.name != OURS:
             continue
@@ -70,6 +73,7 @@ def _comparison(row: Row) -> str:
 
 
 def _short(value: float) -> str:
+    """Three digits, with `k` for thousands and `M` for millions."""
     for size, letter in ((1e6, "M"), (1e3, "k")):
         if abs(value) >= size:
             return f"{_three(value / size)}{letter}"

@@ -20,6 +20,7 @@ from aos_solver.child.engine import Engine
 
 
 def _not_proposed(estimates: Sequence[DrawEstimate]) -> Iterator[str]:
+    """Yields the places where the records contradict a number that is not to be estimated."""
     for found in estimates:
         excluded = [outcome for outcome in found.outcomes if outcome.is_excluded and not outcome.is_inside]
         for outcome in excluded:
@@ -35,6 +36,7 @@ def _not_proposed(estimates: Sequence[DrawEstimate]) -> Iterator[str]:
 
 
 def _by_values(missions: Sequence[RecordedMission]) -> Iterator[tuple[dict[str, str], list[RecordedMission]]]:
+    """The missions with the same values of mission parameters, in the order of the first of them."""
     found: dict[frozenset[tuple[str, str]], list[RecordedMission]] = {}
     for mission in missions:
         found.setdefault(frozenset(mission.mission_parameters.items()), []).append(mission)
@@ -104,6 +106,7 @@ async def _lattices(
     on_build: Callable[[str], None],
     on_mission: Callable[[], None],
 ) -> list[Lattice]:
+    """Returns all that each mission may have been, by the engine of the documents."""
     built = await build_project(draws.keeping, cache_dir(), on_build)
     async with await Engine.start(built, seed=1, keeps_belief=False) as engine:
         lattices: list[Lattice] = []

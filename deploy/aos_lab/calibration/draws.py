@@ -136,6 +136,7 @@ class _Search:
     def _keep(
         self, snippet: Snippet, cpp: Cpp, call: Call, weights: list[_Weight], skill: str, copy: str
     ) -> Iterator[tuple[Extent | int, str]]:
+        """Draws the outcome before the call, which is left with that one alone."""
         variable = f"drawn_here_{len(self.draws) + 1}"
         texts = tuple(snippet.code[weight.stands.start : weight.stands.end] for weight in weights)
         self.draws.append(
@@ -210,6 +211,7 @@ def _weights(cpp: Cpp, call: Call) -> list[_Weight] | None:
 
 
 def _weight(cpp: Cpp, start: int, text: str) -> _Weight | None:
+    """A number, or a constant of the same code that is one."""
     use = Extent.of(cpp.code, start + len(text) - len(text.lstrip()), start + len(text.rstrip()))
     if _NUMBER.fullmatch(text.strip()):
         return _Weight(use, use)

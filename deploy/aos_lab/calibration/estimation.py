@@ -188,6 +188,7 @@ def _alike(lattices: Sequence[Lattice]) -> list[tuple[Lattice, int]]:
 
 
 def _forward(lattice: Lattice, parameters: _Parameters, probabilities: Sequence[Numbers]) -> list[Numbers]:
+    """The odds of each layer's states by all that was observed before."""
     odds = [parameters.odds(layer, probabilities) for layer in lattice.drawn]
     forward = [_scaled(lattice.start * odds[0])]
     for link, layer_odds in zip(lattice.links, odds[1:], strict=True):
@@ -198,6 +199,7 @@ def _forward(lattice: Lattice, parameters: _Parameters, probabilities: Sequence[
 def _one_way(
     lattice: Lattice, forward: Sequence[Numbers], random: np.random.Generator
 ) -> list[npt.NDArray[np.int64]]:
+    """The draws of a way through the layers, drawn from all ways, from its end to its beginning."""
     state = _chosen(forward[-1], random)
     way = [lattice.drawn[-1][state : state + 1]]
     for number in range(lattice.steps - 1, -1, -1):
@@ -218,6 +220,7 @@ def _chosen(odds: Numbers, random: np.random.Generator) -> int:
 
 
 def _of_draw(draw: Draw, counts: Numbers, random: np.random.Generator) -> DrawEstimate:
+    """`counts` has a row for each sweep."""
     totals = counts.sum(axis=1)
     document = _document(draw)
     estimates = []
@@ -261,6 +264,7 @@ def _is_improbable(outcome: Estimate, records: float) -> bool:
 
 
 def _document(draw: Draw) -> Numbers:
+    """The probabilities of all outcomes as the documents have them."""
     if draw.kind == "Bernoulli":
         return np.array([1 - draw.weights[0], draw.weights[0]])
     weights = np.array(draw.weights)

@@ -147,6 +147,7 @@ async def _drawn(layer: Sequence[str], layers: Layers) -> Outcomes:
 
 
 def _pruned(odds: Numbers, links: list[Numbers], drawn: list[Outcomes], remark: str) -> Lattice:
+    """Returns the lattice without the states from which no way leads to the last layer."""
     lives: list[npt.NDArray[np.bool_]] = [np.ones(len(layer), dtype=bool) for layer in drawn]
     for number in range(len(links) - 1, -1, -1):
         lives[number] = np.asarray((links[number][:, lives[number + 1]] > 0).any(axis=1))

@@ -76,6 +76,7 @@ def _missions(path: Path, named: Path) -> Iterator[RecordedMission]:
 
 
 def _of_file(path: Path) -> Iterator[RecordedMission]:
+    """The newest record of each seed."""
     trials: dict[int, Trial] = {}
     for line in path.read_bytes().splitlines():
         try:

@@ -123,6 +123,7 @@ def _verdict(estimate: DrawEstimate, number: int, missions: int) -> str:
 
 
 def _to_tell(estimate: DrawEstimate, missions: int) -> str:
+    """Says how many more missions the records need, if those come to this draw as often as these."""
     missing = estimate.records_to_tell - estimate.count
     if missing <= 0:
         return "enough records"

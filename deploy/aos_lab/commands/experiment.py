@@ -105,6 +105,7 @@ def run(
 
 
 def _report(whole: Results, folder: Path, as_json: bool) -> None:
+    """Writes the report, and says what is in it."""
     from aos_lab.experiments.plots import draw_plots
     from aos_lab.experiments.report import write_report
 
@@ -186,6 +187,7 @@ def _begin(bar: Progress, text: str, total: int) -> Callable[[], None]:
 
 
 def _command(name: str, seeds: int, system_seeds: int, first_seed: int, parts: Sequence[str]) -> str:
+    """Returns the command that runs the same missions again."""
     command = f"aos experiment run {name} --seeds {seeds} --system-seeds {system_seeds}"
     if first_seed != 1:
         command += f" --first-seed {first_seed}"
@@ -193,6 +195,7 @@ def _command(name: str, seeds: int, system_seeds: int, first_seed: int, parts: S
 
 
 def _check_place(on: str, seeds: int, system_seeds: int) -> None:
+    """BadParameter where missions cannot be run."""
     if not seeds and not system_seeds:
         raise typer.BadParameter("no missions: give --seeds or --system-seeds", param_hint="--seeds")
     if on == "local":

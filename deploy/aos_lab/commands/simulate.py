@@ -150,6 +150,7 @@ async def _play(
     *,
     with_states: bool,
 ) -> None:
+    """Plays the missions, and puts each that has ended to those that are `done`."""
     with progress() as bar:
         task = bar.add_task("missions", total=runs)
         engine.on_progress = lambda found: bar.update(task, description=f"missions, {found.text}")

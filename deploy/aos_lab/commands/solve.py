@@ -168,6 +168,7 @@ def solve(
 
 
 def _check_names(exports: list[Path], graph: Path | None) -> None:
+    """Refuses names of files with a wrong ending before the work begins."""
     for path in exports:
         if path.suffix not in WRITERS:
             raise typer.BadParameter(f"{path} needs to end in {' or '.join(WRITERS)}", param_hint="--export")
@@ -296,6 +297,7 @@ def _print_left_out(names: tuple[str, ...]) -> None:
 
 
 def _outwards(bounds: Bounds, digits: Digits) -> tuple[str, str]:
+    """Both bounds so that they hold in the printed digits as well."""
     return digits.plain(digits.down(bounds.lower)), digits.plain(digits.up(bounds.upper))
 
 

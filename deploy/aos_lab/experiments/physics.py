@@ -34,6 +34,7 @@ def keep_picture(runs: Path, seeds: Sequence[int], target: Path) -> Path | None:
 
 
 def _lines(trial: Trial) -> Iterator[dict[str, Any]]:
+    """The lines of a world's record, of which the model's states are none."""
     for state in trial.states:
         if state.startswith("{"):
             yield json.loads(state)

@@ -77,6 +77,7 @@ def _ends(value: Interval) -> tuple[float, float]:
 
 
 def _axis_of(rows: Sequence[_Row]) -> _Axis:
+    """Returns an axis that holds all bars, with a margin."""
     low = min(_ends(row.value)[0] for row in rows)
     high = max(_ends(row.value)[1] for row in rows)
     margin = 0.05 * (high - low) or 0.05 * abs(high) or 0.05
@@ -84,6 +85,7 @@ def _axis_of(rows: Sequence[_Row]) -> _Axis:
 
 
 def _picture(title: str, rows: Sequence[_Row], axis: _Axis) -> str:
+    """Returns SVG with a dot for each row between the ends of its interval."""
     left = 12 + _CHARACTER_PX * max(len(row.label) for row in rows)
     right, floor = _WIDTH_PX - _RIGHT_PX, _TOP_PX + _ROW_PX * len(rows)
     scale = (right - left) / (axis.high - axis.low)

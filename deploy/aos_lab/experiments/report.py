@@ -55,6 +55,7 @@ def markdown_report(results: Results, *, has_pictures: bool = True) -> str:
 
 
 def _claims(results: Results) -> Iterator[str]:
+    """A row for each claim of a part, with the verdicts of all who played it beside each other."""
     players = list(dict.fromkeys(part.by for part in results.parts))
     cells: dict[tuple[str, str], dict[str, str]] = {}
     for part in results.parts:

@@ -1,3 +1,6 @@
+"""The results of an experiment: figures with intervals and verdicts of each part, and what it was run
+with."""
+
 import os
 import platform
 import subprocess

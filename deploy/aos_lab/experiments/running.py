@@ -1,3 +1,5 @@
+"""An experiment's missions: those of its parts, and those of scripts."""
+
 import asyncio
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path

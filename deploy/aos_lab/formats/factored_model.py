@@ -1,3 +1,5 @@
+"""The flattening of a POMDP over variables to one over states: those that can be reached, and no others."""
+
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import msgspec
@@ -233,6 +235,7 @@ class _Flattening:
         )
 
     def _likelihoods(self, steps: list[list[_Steps]]) -> tuple[Ragged, list[int], Integers]:
+        """The observations of every (action, key), the first row of every action, and the sights' codes."""
         firsts, rows, sights, chances, count = [], [], [], [], 0
         for action, found in zip(self._actions, steps, strict=True):
             keys = _keys(found)
@@ -289,6 +292,7 @@ def _keys(found: list[_Steps]) -> Integers:
 
 
 def _sorted_steps(steps: list[list[_Steps]], codes: Integers) -> tuple[Integers, Integers, _Steps]:
+    """The row of every outcome, the order by row and next state, and all outcomes, action by action."""
     joined = _Steps(*(np.concatenate([_all(found, f) for found in steps]) for f in _Steps.__struct_fields__))
     action = np.repeat(np.arange(len(steps)), [sum(len(s.after) for s in found) for found in steps])
     rows = np.searchsorted(codes, joined.before) * len(steps) + action

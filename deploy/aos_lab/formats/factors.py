@@ -103,6 +103,7 @@ class Table(msgspec.Struct, frozen=True, dict=True):
 
     @cached_property
     def _by_first_choice(self) -> dict[int, list[tuple[int, Entry]]]:
+        """The entries with their places, by the choice of the first variable, which mostly is the action."""
         found: dict[int, list[tuple[int, Entry]]] = {}
         for place, entry in enumerate(self.entries):
             found.setdefault(entry.pattern[0], []).append((place, entry))
@@ -132,6 +133,7 @@ class Table(msgspec.Struct, frozen=True, dict=True):
         return self._dense(entries, matters, fixed)
 
     def _fitting(self, fixed: Mapping[str, int]) -> list[Entry]:
+        """The entries that agree with the fixed values, in their order."""
         first = self.variables[0].name
         if first in fixed:
             groups = [self._by_first_choice.get(choice, []) for choice in (fixed[first], ANY, EACH)]

@@ -136,4 +136,5 @@ def _array(name: str, kind: str, values: list[str]) -> str:
 
 
 def _one_line(text: str) -> str:
+    """A text that stays within a comment."""
     return re.sub(r"[^\x20-\x7e]", " ", text).rstrip("\\")

@@ -247,6 +247,7 @@ class _Reader:
     def _check(
         self, keyword: str, table: dict[tuple[int, int], Distribution], needed: set[tuple[int, int]]
     ) -> None:
+        """Probabilities sum to 1 where that matters, and exactly so afterwards."""
         rows = {id(row): row for row in table.values()}
         totals = {number: sum(row.values()) for number, row in rows.items()}
         scaled: dict[int, Distribution] = {}
@@ -280,6 +281,7 @@ class _Reader:
         return dict.fromkeys(self._all(kind), 1 / len(self._names[kind]))
 
     def _some(self, kind: str, word: Word, keywords: tuple[str, ...] = ()) -> Sequence[int]:
+        """Returns the numbers that a name, a number or `*` stands for."""
         if word.text == "*":
             return self._all(kind)
         number = self._numbers[kind].get(word.text)

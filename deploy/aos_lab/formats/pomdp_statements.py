@@ -74,12 +74,14 @@ def _begins(words: list[Word], place: int) -> bool:
 
 
 def _lacks_colon(words: list[Word], place: int) -> bool:
+    """Returns whether a line begins here with a keyword that no colon follows."""
     before = words[place - 1] if place > 0 else None
     is_first = before is None or (before.line < words[place].line and before.text != ":")
     return is_first and words[place].text in KEYWORDS and not _begins(words, place)
 
 
 def _is_no_keyword(words: list[Word], place: int) -> bool:
+    """Returns whether a line begins here as a statement does, with a word that is no keyword."""
     word, following = words[place], words[place + 1 : place + 2]
     before = words[place - 1] if place > 0 else None
     is_first = before is None or (before.line < word.line and before.text != ":")

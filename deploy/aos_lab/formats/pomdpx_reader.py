@@ -137,6 +137,7 @@ class _Reader:
     def _tables(
         self, section: str, wanted: Mapping[str, Variable], known: Mapping[str, Variable]
     ) -> tuple[Table, ...]:
+        """The conditional probabilities of a section, one for each of the `wanted` variables."""
         element = self._section(section)
         if element is None:
             return ()

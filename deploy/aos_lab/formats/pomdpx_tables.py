@@ -124,6 +124,7 @@ class _Diagram:
     def _ways(
         self, parent: Element, chosen: dict[int, int], depth: int
     ) -> Iterator[tuple[dict[int, int], float]]:
+        """All assignments below an element, each with its number."""
         if depth > len(self._table.variables) + len(self._templates) + 1:
             self._findings.error("AOS106", "the diagram refers to itself", parent)
             return

@@ -1,3 +1,5 @@
+"""The text of a problem file: where its words stand, and what is wrong with them."""
+
 import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress

@@ -1,3 +1,5 @@
+"""Writes `.pomdp` and `.pomdpx`, for other planners to read."""
+
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from xml.sax.saxutils import escape
@@ -36,6 +38,7 @@ class _Names:
 
 
 def _transitions(model: ExplicitModel, names: _Names) -> Iterator[tuple[str, str, str, float]]:
+    """Action, state, next state and probability."""
     for row in range(len(model.outcomes)):
         state, action = divmod(row, len(model.actions))
         for after, probability in zip(*model.outcomes.row(row), strict=True):
@@ -43,6 +46,7 @@ def _transitions(model: ExplicitModel, names: _Names) -> Iterator[tuple[str, str
 
 
 def _observations(sensing: SensingByState, names: _Names) -> Iterator[tuple[str, str, str, float]]:
+    """Action, next state, observation and probability, where there is a rule."""
     for action, rows in enumerate(sensing.rows):
         for state, row in enumerate(rows):
             if row == NEVER:
@@ -59,6 +63,7 @@ def _observations(sensing: SensingByState, names: _Names) -> Iterator[tuple[str,
 
 
 def _rewards(model: ExplicitModel, names: _Names) -> Iterator[tuple[str, str, float]]:
+    """Action, state and reward, where it is not 0."""
     for state, action in zip(*model.rewards.nonzero(), strict=True):
         yield names.actions[action], names.states[state], float(model.rewards[state, action])
 

@@ -152,6 +152,7 @@ def _kept(records: Path, digest: str) -> list[Trial]:
 
 
 def _digest(setting: Setting, deployment: Deployment, world: Deployment | None) -> str:
+    """Returns the digest of all that a mission's outcome depends on beside its seed."""
     whole = hashlib.sha256(f"{__version__} {setting.by}".encode())
     whole.update(" > ".join(setting.script).encode())
     whole.update(msgspec.json.encode((deployment.file.mission, deployment.file.solver, deployment.file.bind)))

@@ -178,6 +178,7 @@ _ask_sources = _sources_of
 
 
 def _by_value(function: Any) -> Any:
+    """The function as one that Ray sends with its code instead of its name."""
     import types
 
     return types.FunctionType(
@@ -205,6 +206,7 @@ async def _answer(reference: Any, timeout_s: float, what: str) -> Any:
 
 
 def _first_line(error: BaseException) -> str:
+    """Returns the first line of an error, with the next line where the first one only announces it."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     if not lines:
         return type(error).__name__

@@ -94,6 +94,7 @@ class ScriptPlayer:
             await evaluator.close()
 
     async def _response(self, world: Any, action: GroundedAction) -> tuple[str, dict[str, Any]]:
+        """Calls the skill and returns what came back, and the fields that it was called with."""
         evaluator = self._evaluators[action.skill]
         fields = await evaluator.begin(action.parameters)
         world.begin()

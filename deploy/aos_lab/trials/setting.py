@@ -1,3 +1,5 @@
+"""The setting of a mission: a deploy file, and what is different from it."""
+
 from pathlib import Path
 from typing import Any, Literal
 
@@ -89,6 +91,7 @@ def _named(names: tuple[str, ...], folder: Path) -> tuple[Path, ...]:
 
 
 def _with_faults(deployment: Deployment, setting: Setting, out: Path) -> Deployment:
+    """The deployment with a world file whose faults are other ones."""
     if deployment.world is None or setting.by != "system":
         hint = (
             "Faults are those of the deploy file's `world:` in missions `by: system`, or those of skills in "

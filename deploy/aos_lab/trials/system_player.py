@@ -1,3 +1,5 @@
+"""Missions of a whole system, as `aos-up` runs them, each with a run directory of its own."""
+
 import asyncio
 import shutil
 from pathlib import Path

@@ -1,3 +1,5 @@
+"""One mission that was run for its record: what was done, what came back, how it ended."""
+
 import json
 from pathlib import Path
 

@@ -89,6 +89,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
 
 
 def _reported_to_model(mapping: AbstractionMapping, name: str, assembly: Assembly) -> frozenset[str]:
+    """The names of local variables that an update of the belief uses."""
     model, environment = assembly.models.get(name), assembly.environment
     named = names_in_given_observation(model) if model is not None else frozenset()
     if model is not None:

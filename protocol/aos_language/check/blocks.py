@@ -1,3 +1,5 @@
+"""The pieces of model code of the documents, each with what it may read and write."""
+
 from collections.abc import Iterator, Mapping
 
 import msgspec

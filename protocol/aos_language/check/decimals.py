@@ -78,6 +78,7 @@ def _wholes(block: Block, cpp: Cpp, scope: Scope) -> Iterator[tuple[str, Extent]
 
 
 def _computed(cpp: Cpp) -> Iterator[str]:
+    """The last names of what a calculation or a draw sets."""
     for mention in cpp.mentions:
         given = cpp.code[mention.assigned.start : mention.assigned.end] if mention.assigned else ""
         if (mention.access is Access.UPDATE and not mention.method) or _COMPUTED.search(given):

@@ -93,6 +93,7 @@ def _check_type(name: str, span: Span, scope: Scope, findings: Findings) -> bool
 
 
 def _check_index(enum: str, span: Span, scope: Scope, findings: Findings) -> None:
+    """An array is indexed by an enum of the environment."""
     if enum and enum not in scope.enums and (enum in scope.type_names or not scope.unknown_type_name(enum)):
         message = f"`{enum}` is no enum, and cannot be what an array is indexed by"
         findings.error("AOS110", message, span, f"The enums are {quoted(scope.enums)}" if scope.enums else "")
@@ -107,6 +108,7 @@ def _check_low_level_type(name: str | None, span: Span, scope: Scope, findings: 
 
 
 def _check_cycles(compounds: Iterable[CompoundType], scope: Scope, findings: Findings) -> None:
+    """A compound cannot hold itself, not through others either."""
     for compound in compounds:
         reached: set[str] = set()
         waiting = [compound.name]

@@ -29,6 +29,7 @@ def check_defaults(environment: Environment, findings: Findings) -> None:
 
 
 def _writes(variable: StateVariable) -> list[Mention]:
+    """The changes of state variables in the code of a default."""
     cpp = read_cpp(variable.default_code.code) if variable.default_code is not None else None
     if cpp is None or cpp.faults:
         return []

@@ -82,6 +82,7 @@ def _type_of(variable: documents.LocalVariable, model: documents.SkillModel, sco
 def _mistakes(
     node: ast.AST, enums: dict[str, documents.EnumType], takes_all: bool
 ) -> Iterator[tuple[ast.expr, str, str]]:
+    """The name, the message and the hint of each mistake in one node of the syntax tree."""
 
     def name_of(part: ast.AST) -> ast.Name | None:
         return part if isinstance(part, ast.Name) and part.id in enums else None

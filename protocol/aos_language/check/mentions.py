@@ -75,6 +75,7 @@ class MentionCheck:
             self._check_special_name(mention, root)
 
     def _check_drawing_function(self, mention: Mention, root: str) -> None:
+        """The source of draws is given to a function where it is called, and only there."""
         names = {function.name_extent.start for function in self._scope.shared.functions}
         if root in self._locals or (self._block.is_declarations and mention.root.start in names):
             return
@@ -99,6 +100,7 @@ class MentionCheck:
             self._findings.unknown(root, skills, message, span, hint, severity=Severity.WARNING)
 
     def _check_special_name(self, mention: Mention, root: str) -> None:
+        """A name that starts as those of the language, or is set like one of them and lacks underscores."""
         known = (*SPECIAL_NAMES, *self._scope.low_level_names)
         is_set = mention.access in (Access.WRITE, Access.UPDATE)
         is_meant = is_set and root.strip("_").lower() in _PLAIN_SPECIAL_NAMES
@@ -141,6 +143,7 @@ class MentionCheck:
             self._findings.error("AOS123", f"`{mention.text}` is written in {role.title}", span, hint)
 
     def _check_bound(self, mention: Mention, path: tuple[str, ...]) -> None:
+        """A reference or a pointer changes what it stands for."""
         role, root = self._block.role, mention.path[0]
         if path[0] in role.writes or path[0] not in role.reads or self._scope.is_one_state_model:
             return
@@ -233,6 +236,7 @@ class MentionCheck:
             )
 
     def _check_index(self, subscript: Extent, enum: str) -> None:
+        """An array over an enum is indexed by its values, or by numbers."""
         name = self._cpp.code[subscript.start : subscript.end]
         values, owner = self._scope.enums[enum].values, self._scope.enum_values.get(name)
         if name in values or name in self._locals or name in self._declared or name in self._block.names:

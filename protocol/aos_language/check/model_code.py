@@ -45,6 +45,7 @@ def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> Non
 def _check_blocks(
     blocks: Iterable[tuple[Assignment, ...]], pieces: tuple[Block, ...], scope: Scope, findings: Findings
 ) -> None:
+    """The sections of a document, and the blocks that they consist of."""
     for block in blocks:
         _check_loops(block, scope, findings)
     around = _Around(_temporary_enums(blocks), _declared_names(pieces))
@@ -58,6 +59,7 @@ def check_block(block: Block, scope: Scope, findings: Findings) -> None:
 
 
 def _enum_sizes(cpp: Cpp) -> dict[str, int]:
+    """The enums that code declares, with how many values they have."""
     values = [
         declaration.type for declaration in cpp.declarations if declaration.kind is DeclarationKind.ENUMERATOR
     ]
@@ -66,6 +68,7 @@ def _enum_sizes(cpp: Cpp) -> dict[str, int]:
 
 
 def _temporary_enums(blocks: Iterable[tuple[Assignment, ...]]) -> dict[str, int]:
+    """The enums that temporary variables declare, with how many values they have."""
     temporaries = (assignment.temporary for block in blocks for assignment in block)
     return {
         temporary.enum_name: len(temporary.enum_values)
@@ -149,6 +152,7 @@ class _BlockCheck:
                 self._check_unset(self._cpp)
 
     def _is_idle_default(self) -> bool:
+        """Warns of code for a variable's default that sets nothing."""
         cpp, name = self._cpp, self._block.sets
         if not name or self._block.is_expression or cpp.is_empty or cpp.calls or any(cpp.writes()):
             return False
@@ -212,6 +216,7 @@ class _BlockCheck:
                 check_weights(call, self._cpp.code, self._enum_sizes, self._span, self._findings)
 
     def _check_enum(self, call: Call) -> None:
+        """SampleDiscrete takes weights, and before them an enum or the values that are drawn."""
         if call.name[1] != "SampleDiscrete":
             return
         place = call.arguments[0] if call.arguments else call.function
@@ -239,6 +244,7 @@ class _BlockCheck:
             )
 
     def _check_lone_name(self) -> None:
+        """A default or condition that is one name must be an enum's value, declared, or low-level."""
         mentions = self._cpp.mentions
         if not self._block.is_expression or len(mentions) != 1 or len(mentions[0].path) != 1:
             return

@@ -43,6 +43,7 @@ def check_monitors(assembly: Assembly, scope: Scope, findings: Findings, *, is_w
 
 
 def _check_stopped(stop_when: Snippet, assembly: Assembly, findings: Findings) -> None:
+    """Warns where it can stop skills whose mappings say nothing of a stop."""
     silent = sorted(name for name, mapping in assembly.mappings.items() if not tells_of_stops(mapping))
     if silent:
         message = f"no rule says what is observed where this stops {', '.join(silent)}"
@@ -66,10 +67,12 @@ def _models(assembly: Assembly, findings: Findings) -> dict[str, MonitorModel]:
 
 
 def _as_skill(model: MonitorModel) -> SkillModel:
+    """A monitor's model in the place where a skill says what it reports."""
     return SkillModel("", model.name, model.span, dynamic_model=model.code)
 
 
 def _check_form(mapping: AbstractionMapping, findings: Findings) -> None:
+    """Reports what a monitor lacks, and what only a skill can have."""
     for variable in mapping.local_variables:
         if variable.source is not LocalSource.TOPIC:
             source = "parameters" if variable.source is LocalSource.PARAMETER else "result"

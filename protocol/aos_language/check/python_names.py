@@ -145,6 +145,7 @@ def _names_of_constants(document: LowLevelDocument | None) -> frozenset[str]:
 
 
 def _names_of_shared(snippet: Snippet | None) -> frozenset[str]:
+    """Returns the names that the environment's `shared_mapping_code` gives to the mappings' modules."""
     if snippet is None:
         return frozenset()
     try:
@@ -154,6 +155,7 @@ def _names_of_shared(snippet: Snippet | None) -> frozenset[str]:
 
 
 def _shared_functions(snippet: Snippet | None, hidden: tuple[str, ...]) -> dict[str, ast.FunctionDef]:
+    """The functions of the environment's `shared_mapping_code` by name, but for those that are hidden."""
     try:
         body = module_of(snippet.code).body if snippet is not None else []
     except (SyntaxError, ValueError, RecursionError, MemoryError):

@@ -69,6 +69,7 @@ def _instead(code: str, wrong: str, mode: str) -> str:
 
 
 def _check_lone_commas(snippet: Snippet, tree: ast.AST, findings: Findings) -> None:
+    """Warns where a comma at the end makes a value a tuple of one, which is always true."""
     for node in ast.walk(tree):
         match node:
             case (
@@ -87,6 +88,7 @@ def _check_lone_commas(snippet: Snippet, tree: ast.AST, findings: Findings) -> N
 
 
 def _check_bit_operators(snippet: Snippet, tree: ast.AST, findings: Findings) -> None:
+    """Warns of `a > 4 & b`, which compares `a` with `4 & b`."""
     lines = snippet.code.split("\n")
     for node in ast.walk(tree):
         if not isinstance(node, ast.Compare):

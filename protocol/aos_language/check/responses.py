@@ -149,6 +149,7 @@ def _assigned_names(read: list[tuple[Block, Cpp]]) -> Iterator[tuple[Block, Ment
 
 
 def _own_names(model: SkillModel, read: list[tuple[Block, Cpp]]) -> tuple[set[str], set[str]]:
+    """The values of the enums that the dynamic model declares, and the names of its variables."""
     temporaries = [
         assignment.temporary for assignment in model.dynamic_model if assignment.temporary is not None
     ]

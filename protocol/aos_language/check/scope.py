@@ -1,3 +1,5 @@
+"""The meanings of a project's names: types, enum values, state variables, skills."""
+
 from __future__ import annotations
 
 import re

@@ -83,6 +83,7 @@ def _neither(snippet: Snippet, findings: Findings) -> None:
 
 
 def _is_no_truth(value: ast.AST) -> bool:
+    """Returns whether an expression is certainly no truth value, whatever its names stand for."""
     if isinstance(value, ast.BinOp):
         return isinstance(value.op, _OF_NUMBERS)
     if isinstance(value, ast.UnaryOp):
@@ -91,6 +92,7 @@ def _is_no_truth(value: ast.AST) -> bool:
 
 
 def _heard(mapping: AbstractionMapping, tree: ast.AST) -> bool:
+    """Returns whether the expression reads a local variable of a topic."""
     names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
     topics = {v.name for v in mapping.local_variables if v.source is LocalSource.TOPIC}
     return bool(names & topics)

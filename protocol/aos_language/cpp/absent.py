@@ -36,6 +36,7 @@ def without_null(code: str, null: Collection[str]) -> str:
 
 
 def _never_run(node: tree_sitter.Node, null: Collection[str]) -> Iterator[tuple[int, int, str]]:
+    """The bytes below a node that never run, with what stands in their place."""
     match node.type:
         case "compound_statement":
             for part in node.named_children[:-1]:

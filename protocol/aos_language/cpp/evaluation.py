@@ -94,6 +94,7 @@ class Evaluation:
                 self.expression(argument, state)
 
     def _is_stream(self, node: tree_sitter.Node | None) -> bool:
+        """Returns whether the first operand of `text >> first >> second` may be a stream, which sets them."""
         while node is not None and node.type == "binary_expression" and operator_of(node) == ">>":
             node = node.child_by_field_name("left")
         return node is not None and node.type == "identifier" and text_of(node) not in self.declared

@@ -343,6 +343,7 @@ def _name_of_draw(start_byte: int) -> Name:
 
 
 def _of_state(node: tree_sitter.Node) -> Name | None:
+    """The variable behind `state.x`."""
     if picks_member(node):
         return None
     argument, field = node.child_by_field_name("argument"), node.child_by_field_name("field")
@@ -357,6 +358,7 @@ _NUMBERS = frozenset({"bool", "char", "double", "float", "int", "long", "short",
 
 
 def _is_value_type(node: tree_sitter.Node | None) -> bool:
+    """Returns whether a variable of the type, without `&` and `*`, refers to nothing else."""
     return node is not None and text_of(node).split()[-1] in _NUMBERS
 
 
@@ -409,6 +411,7 @@ def _is_effect(node: tree_sitter.Node, functions: _Functions) -> bool:
 
 
 def _may_change(call: tree_sitter.Node, functions: _Functions) -> bool:
+    """Returns whether a call may change its object or an argument."""
     function = call.child_by_field_name("function")
     if function is None or function.type == "primitive_type":
         return False
@@ -425,6 +428,7 @@ def _may_change(call: tree_sitter.Node, functions: _Functions) -> bool:
 
 
 def _gives_handle(node: tree_sitter.Node) -> bool:
+    """Returns whether the value of an expression may be an iterator or a pointer."""
     for part in below(node):
         field = part.child_by_field_name("field") if part.type == "field_expression" else None
         if field is not None and (text_of(field) in HANDLE_METHODS or text_of(field).endswith("Objects")):

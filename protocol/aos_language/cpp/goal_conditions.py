@@ -114,6 +114,7 @@ class _Reading:
             self._count(node, truth)
 
     def _want_choice(self, node: tree_sitter.Node, truth: bool) -> bool:
+        """Counts what a choice between two values depends on, if one of them is what is wanted."""
         condition = node.child_by_field_name("condition")
         first, second = (node.child_by_field_name(name) for name in ("consequence", "alternative"))
         if condition is None or first is None or second is None:
@@ -209,6 +210,7 @@ class _Reading:
                 self._edit(block, statement.start_byte, statement.end_byte, ";")
 
     def _set(self, name: str) -> Iterator[tuple[tree_sitter.Node, tree_sitter.Node]]:
+        """The declarations and assignments of a local variable that give it a value."""
         for _, node in self._nodes:
             if node.type == "init_declarator":
                 target, value = (node.child_by_field_name(field) for field in ("declarator", "value"))
@@ -243,11 +245,13 @@ def _declared(node: tree_sitter.Node) -> Iterator[str]:
 
 
 def _is_positive(node: tree_sitter.Node) -> bool:
+    """Returns whether a value may be above 0, for all that its text tells."""
     text = text_of(node).strip("( )")
     return not text.startswith("-") and text != "false" and not re.fullmatch(r"[0.]+f?", text)
 
 
 def _is_punished(node: tree_sitter.Node) -> bool:
+    """Returns whether the block of a statement costs something."""
     block = node.parent.parent if node.parent is not None else None
     return block is not None and any(
         re.match(r"__reward\s*(?:-=|\+?=\s*-)", text_of(child)) for child in block.named_children
@@ -263,6 +267,7 @@ def _is_in_loop(node: tree_sitter.Node) -> bool:
 
 
 def _cannot_fail(node: tree_sitter.Node) -> bool:
+    """Returns whether an expression may be evaluated whatever was asked before it."""
     return not any(
         part.type in _MAY_FAIL
         or (part.type == "field_expression" and "->" in text_of(part))

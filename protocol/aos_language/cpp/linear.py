@@ -130,5 +130,6 @@ def _identifiers(node: tree_sitter.Node | None) -> Iterator[str]:
 
 
 def _function(draw: tree_sitter.Node) -> str:
+    """The last name of what is called."""
     function = draw.child_by_field_name("function")
     return re.findall(r"\w+", text_of(function))[-1] if function is not None else ""

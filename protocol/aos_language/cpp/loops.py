@@ -255,6 +255,7 @@ def _names_of_declarator(declarator: tree_sitter.Node | None) -> list[tuple[str,
 
 
 def _unset(node: tree_sitter.Node) -> Iterator[int]:
+    """Yields the ends of the declaration's variables without a first value."""
     if node.type != "declaration" or any(child.type == "storage_class_specifier" for child in node.children):
         return
     if node.child_by_field_name("value") is not None:  # `if (int n = count())`
@@ -265,6 +266,7 @@ def _unset(node: tree_sitter.Node) -> Iterator[int]:
 
 
 def _counts(loop: tree_sitter.Node) -> bool:
+    """Returns whether it is a `for` over a variable that only its last part changes."""
     update, condition = loop.child_by_field_name("update"), loop.child_by_field_name("condition")
     body = loop.child_by_field_name("body")
     if loop.type != "for_statement" or update is None or condition is None or body is None:
@@ -288,6 +290,7 @@ def _counts(loop: tree_sitter.Node) -> bool:
 
 
 def _changed(body: tree_sitter.Node) -> set[str]:
+    """The names that a statement assigns to, or makes a reference or a pointer of."""
     changed: set[str] = set()
     for part in below(body):
         if part.type in ("update_expression", "pointer_expression"):

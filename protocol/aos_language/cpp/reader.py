@@ -178,6 +178,7 @@ class TreeReader:
         self.elements.append(Element(self.extent(container), brackets, text_of(root_of(container))))
 
     def _dereferenced(self, iterator: tree_sitter.Node) -> None:
+        """Asks the container of an iterator, also one of the state, whose iterators check nothing."""
         if (container := begun_container(iterator)) is not None:
             self.elements.append(Element(self.extent(container)))
 

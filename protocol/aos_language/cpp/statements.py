@@ -128,6 +128,7 @@ def _parent(node: tree_sitter.Node) -> tree_sitter.Node:
 
 
 def _is_branch(node: tree_sitter.Node) -> bool:
+    """A statement without braces below an `if`, an `else` or a loop."""
     parent = _parent(node)
     if not node.is_named or node.type in ("compound_statement", *_NO_STATEMENTS):
         return False

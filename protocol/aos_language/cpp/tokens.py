@@ -306,6 +306,7 @@ def _from_a_page(character: str, extent: Extent) -> Fault:
 
 
 def _python_lines(code: str, lines: Lines, elsewhere: Sequence[Extent]) -> Iterator[Fault]:
+    """The first line with a statement of Python that C++ does not have."""
     for match in _PYTHON_LINE.finditer(code):
         extent = lines.extent(*match.span("word"))
         is_text = any(part.start <= extent.start < part.end for part in elsewhere)

@@ -67,6 +67,7 @@ def tree_soon(text: str) -> tree_sitter.Node | None:
 
 
 def _with_variables(root: tree_sitter.Node, data: bytes) -> tree_sitter.Node:
+    """The tree with the variables that the parser has taken for functions."""
     if _MAY_DECLARE.search(data, max(data.find(b"{"), 0)) is None:
         return root
     starts = _starts(root)
@@ -80,12 +81,14 @@ def _with_variables(root: tree_sitter.Node, data: bytes) -> tree_sitter.Node:
 
 
 def _starts(root: tree_sitter.Node) -> list[tree_sitter.Node]:
+    """The values in brackets that were read as the parameters of a function."""
     declared = tree_sitter.QueryCursor(_local_functions()).captures(root).get("declared", ())
     lists = [node.child_by_field_name("parameters") for node in declared]
     return [values for values in lists if values is not None and _are_values(values)]
 
 
 def _are_values(parameters: tree_sitter.Node) -> bool:
+    """Returns whether what was read as parameters has neither names nor types of C++ alone."""
     for part in parameters.named_children:
         if part.is_error:
             continue

@@ -1,3 +1,5 @@
+"""Names in a skill's code that are both a response and a value of an enum: where the value is meant."""
+
 import re
 
 import tree_sitter

@@ -193,6 +193,7 @@ def _variable(record: Record) -> documents.StateVariable | None:
 
 
 def _where_included(record: Record, code: documents.Snippet | None) -> documents.Snippet | None:
+    """The code of a map variable, for the keys where `IncludeParametersCode` holds."""
     key = "IncludeParametersCode"
     if not record.is_code(key):
         return code if record.boolean(key, default=True) else None

@@ -36,6 +36,7 @@ def read_mapping(record: Record, project: str, name: str, span: Span) -> documen
 
 
 def _of_monitor(record: Record, monitor: Text) -> documents.Activation:
+    """The activation of a monitor, which calls nothing, and is where the monitor is named."""
     if record.has("ModuleActivation"):
         message = "a mapping is that of a monitor or calls a skill, not both"
         span = record.key_span("ModuleActivation")

@@ -1,3 +1,5 @@
+"""A JSON object read by key: typed values, with a finding for each that is missing, wrong or unread."""
+
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -218,6 +220,7 @@ class Record:
         return None if snippet is None else expression(snippet)
 
     def _literal(self, key: str) -> Snippet | None:
+        """A value that should be code and is no text, as Python writes it."""
         value = self._value(key)
         if not isinstance(value, JsonNumber | JsonConstant):
             return None

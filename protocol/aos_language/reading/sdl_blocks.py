@@ -85,6 +85,7 @@ def _add_to_loop(part: Part, loops: list[Iteration] | None, findings: Findings) 
 
 
 def _temporary(part: Part, findings: Findings) -> TemporaryVariable | None:
+    """`int n`, or `enum Ending { Good, Bad } ending` as in C++."""
     value = part.value
     if match := _TEMPORARY_ENUM.fullmatch(value.text):
         enum_name, name = (Text(match.group(i), value.after(match.start(i)).span) for i in (1, 3))

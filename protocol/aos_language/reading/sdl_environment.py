@@ -168,6 +168,7 @@ def _field(part: Part, names: Sequence[str], findings: Findings) -> documents.Fi
 
 
 def _low_level_type(declaration: Declaration) -> tuple[Text, str | None]:
+    """Splits the text after the name of an `anyValue` into the rest and the type of `of <low-level type>`."""
     rest = declaration.rest
     match = _LOW_LEVEL_TYPE.search(rest.text) if declaration.type == "anyValue" else None
     if match is None:
@@ -217,6 +218,7 @@ def _variable(section: Section, names: Sequence[str], findings: Findings) -> doc
 
 
 def _key_types(text: Text, findings: Findings) -> tuple[str, ...]:
+    """Enum names and ranges between commas."""
     if not _KEYS.fullmatch(text.text):
         hint = "Write enum names and ranges (start,stop,step) between commas"
         findings.error("AOS104", f"these keys cannot be read: {text.text!r}", text.span, hint)

@@ -221,6 +221,7 @@ class _Scanner:
             self._add_to_body(line)
 
     def _opens_apart(self, line: Text) -> bool:
+        """Opens the section or part whose word a line has with blanks or hyphens for underscores."""
         match = _APART.match(line.text)
         if match is None:
             return False
@@ -234,6 +235,7 @@ class _Scanner:
         return self._opens(word, at, line.after(match.end()))
 
     def _opens_without_colon(self, line: Text) -> bool:
+        """Opens the section or part that a line begins with where only its colon is missing."""
         match = _WORD_ALONE.match(line.text)
         if match is None:
             return False
@@ -359,5 +361,6 @@ class _Scanner:
 
 
 def _without_comment(value: Text) -> Text:
+    """A line's value without the comment behind it and the blanks around it."""
     before = _COMMENT_AFTER_VALUE.match(value.text)
     return Text(before.group() if before else value.text, value.span).strip()

@@ -250,6 +250,7 @@ def _loops(loops: Iterable[documents.Iteration]) -> list[dict[str, Any]]:
 
 
 def _code(snippet: documents.Snippet | None) -> str | list[str] | None:
+    """A line as text, several as a list of lines."""
     if snippet is None:
         return None
     lines = snippet.code.split("\n")

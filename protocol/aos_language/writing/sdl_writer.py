@@ -207,6 +207,7 @@ def _loops(word: str, loops: Iterable[documents.Iteration]) -> Iterator[str]:
 
 
 def _expression(word: str, snippet: documents.Snippet | None) -> Iterator[str]:
+    """Yields the expression on the line of its word where it fits there, else below it."""
     if snippet is not None:
         is_short = "\n" not in snippet.code
         yield from (f"{word}: {snippet.code}",) if is_short else (f"{word}:", *_lines(snippet))

@@ -1,3 +1,5 @@
+"""Code in documents: text with its places, and the blocks that it stands in."""
+
 import msgspec
 
 from aos_protocol.diagnostics import Span

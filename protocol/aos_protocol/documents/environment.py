@@ -1,3 +1,5 @@
+"""The environment document: state and its types, initial belief, extrinsic changes, rewards, monitors."""
+
 import msgspec
 
 from aos_protocol.diagnostics import Span

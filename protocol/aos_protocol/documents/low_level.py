@@ -1,3 +1,5 @@
+"""The environment's Python side: low-level types and constants."""
+
 import msgspec
 
 from aos_protocol.diagnostics import Span

@@ -1,3 +1,5 @@
+"""The abstraction mapping (AM): from parameters to the call, and from what happened to the observation."""
+
 from collections.abc import Mapping
 
 import msgspec

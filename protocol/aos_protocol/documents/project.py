@@ -1,3 +1,5 @@
+"""All documents of one robot and task, and what its mission adds to them."""
+
 import msgspec
 
 from aos_protocol.diagnostics import Span

@@ -1,3 +1,5 @@
+"""The skill document (SD): how a skill changes the world, what it costs, what it reports."""
+
 import msgspec
 
 from aos_protocol.diagnostics import Span

@@ -1,3 +1,5 @@
+"""The base of every message, the envelope around it, and the answer to a fault."""
+
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic

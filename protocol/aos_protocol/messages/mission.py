@@ -1,3 +1,5 @@
+"""The mission: its phase, its beliefs, and its decisions."""
+
 import math
 from typing import Annotated, Any, Literal
 

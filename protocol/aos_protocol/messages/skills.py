@@ -1,3 +1,5 @@
+"""Activations: what the solver asks the middleware, and the middleware the adapters."""
+
 from typing import Any
 
 from aos_protocol.messages.base import Fault, Message

@@ -174,6 +174,7 @@ class Calls:
         return await answer
 
     async def _ended(self, running: RunningCall) -> Answer:
+        """Runs a call to its end, by itself, by its deadline or by a cancellation."""
         call, task = running.call, running.task
         given_up = asyncio.create_task(running.stuck.wait())
         await asyncio.wait({task, given_up}, timeout=call.deadline_s, return_when=asyncio.FIRST_COMPLETED)

@@ -1,3 +1,5 @@
+"""The messages of an adapter that wait to be sent, from any thread, in order."""
+
 import asyncio
 import logging
 import threading

@@ -45,6 +45,7 @@ class Pauses:
         self._timer = self._loop.call_later(_TURN_S, self._turn)
 
     def _note(self) -> float:
+        """Returns the time, and keeps it where a pause ends."""
         now_s = self._loop.time()
         if now_s - self._turned_s > _PAUSE_S:
             self._paused_until_s = now_s

@@ -1,3 +1,5 @@
+"""The result of a call, from what an adapter has answered."""
+
 from typing import Any
 
 from aos_protocol.errors import SkillError

@@ -1,3 +1,5 @@
+"""The call that an adapter runs, and what is told of its progress."""
+
 import asyncio
 from collections.abc import Callable
 

@@ -99,6 +99,7 @@ def _own_folder() -> Path:
 
 
 def _value(text: str) -> Any:
+    """Numbers and truth values as such, all else as text."""
     try:
         return msgspec.json.decode(text)
     except UNREADABLE:

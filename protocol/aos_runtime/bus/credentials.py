@@ -1,3 +1,5 @@
+"""Names and passwords on the bus, in files that only their user can read."""
+
 from __future__ import annotations
 
 import os

@@ -1,3 +1,5 @@
+"""Presence: the keys that are there on the bus, as one session hears it."""
+
 from __future__ import annotations
 
 from functools import partial

@@ -1,3 +1,5 @@
+"""A watch on whether somebody serves a key, while a question on it is open."""
+
 from __future__ import annotations
 
 import asyncio

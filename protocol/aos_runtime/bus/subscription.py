@@ -1,3 +1,5 @@
+"""A stream from the bus as an asynchronous iterator with a bounded queue."""
+
 from __future__ import annotations
 
 import asyncio

@@ -62,6 +62,7 @@ class Ledger(Generic[Request, End]):
         return False
 
     def _take(self, request: Request) -> None:
+        """Those of missions before it in the same system are on the disk, and nobody asks for them."""
         mission = request.id.mission
         if mission != self._mission:
             self._mission = mission

@@ -1,3 +1,5 @@
+"""The adapters' paths that are served now, and why others are not, as their tokens tell."""
+
 from collections.abc import Callable
 from typing import TypeVar
 

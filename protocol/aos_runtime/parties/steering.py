@@ -1,3 +1,5 @@
+"""The questions with which an operator starts a mission and steers the one that runs."""
+
 import getpass
 import socket
 import uuid

@@ -265,6 +265,7 @@ def _children(pid: int) -> list[int]:
 
 
 def _scheduled_s(pid: int) -> tuple[float, float]:
+    """The time on a processor, and that of waiting for one, of a process and its children."""
     try:
         ran_ns, waited_ns, *_ = map(int, Path(f"/proc/{pid}/schedstat").read_text().split())
     except (OSError, ValueError):

@@ -92,6 +92,7 @@ def _leave_to_keeper(grace_s: float) -> None:
 
 
 def _parse(arguments: list[str]) -> tuple[float, float | None, int, dict[int, int], Sandbox, list[str]]:
+    """The grace, that of what is left behind, the niceness, the limits by kind, the sandbox, the command."""
     split = arguments.index("--") if "--" in arguments else len(arguments)
     options, command = arguments[:split], arguments[split + 1 :]
     if len(options) % 2 or not command:

@@ -1,3 +1,5 @@
+"""A trial of the sandbox: a confined program that tries what it may not."""
+
 import os
 import subprocess
 import sys

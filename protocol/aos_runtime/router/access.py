@@ -1,3 +1,5 @@
+"""The router's access control, made of the table in `aos_protocol.access`, in Zenoh's words."""
+
 from __future__ import annotations
 
 from collections.abc import Iterable
@@ -35,6 +37,7 @@ def access_control(robot: str, parties: Iterable[Party]) -> dict[str, Any]:
 
 
 def _rules(robot: str, party: Party) -> list[dict[str, Any]]:
+    """One rule for each act, direction and permission that the party has."""
     keys: dict[tuple[Act, bool], list[str]] = {}
     for grant in grants(robot, party):
         keys.setdefault((grant.act, grant.is_denied), []).append(grant.key)

@@ -75,6 +75,7 @@ def _offer_to_end_first() -> None:
 
 
 def _found(program: str) -> str:
+    """The path of a program, as a shell finds it."""
     if "/" in program:
         return program
     for folder in os.get_exec_path():

@@ -72,6 +72,7 @@ def restrict_files(rules: Iterable[tuple[str, int]], known: int) -> None:
 
 
 def _handled(known: int) -> int:
+    """The rights to files that a version can refuse."""
     rights = (1 << 13) - 1
     for since, right in ((2, _MOVE), (3, _TRUNCATE), (5, _IOCTL_DEVICE)):
         rights |= right if known >= since else 0

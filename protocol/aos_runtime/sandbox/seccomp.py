@@ -118,6 +118,7 @@ def why_missing(machine: str) -> str:
 
 
 def _body(rule: Rule) -> list[bytes]:
+    """The steps that follow when the number is the rule's."""
     body: list[bytes] = []
     for alternative in rule.alternatives:
         checks = [_checks(condition) for condition in alternative]

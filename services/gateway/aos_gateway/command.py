@@ -1,3 +1,5 @@
+"""`aos serve`: the runs of this machine over HTTP, and the page that shows them."""
+
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Annotated

@@ -104,6 +104,7 @@ def listening(host: str, port: int) -> Iterator[socket.socket]:
 
 @contextmanager
 def _noted(folder: Path, address: str) -> Iterator[None]:
+    """Lets `aos-up --page` find this gateway while it serves."""
     path = folder / "gateway.json"
     path.write_bytes(msgspec.json.encode(GatewayNote(address, os.getpid())))
     try:

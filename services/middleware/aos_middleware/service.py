@@ -131,6 +131,7 @@ class _Middleware:
         )
 
     def _take_over(self) -> None:
+        """Other mappings are in use."""
         self._monitors.follow(self._mappings.monitors)
         self._tell_state()
 
@@ -140,6 +141,7 @@ class _Middleware:
             self._service.bus.tell(self._service.keys.mapping_state, self._state())
 
     async def _activate(self, request: Activate, key: str) -> Outcome:
+        """Runs an activation, joins the one of the same id, or tells again how it ended."""
         if key != self._service.keys.activate(request.skill):
             raise BusError(f"an activation of {request.skill} was sent to {key}", code="AOS602")
         try:

@@ -1,3 +1,5 @@
+"""Bundles that were dropped into the watched folder, and those of them that wait for what they lack."""
+
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable, Mapping
@@ -128,6 +130,7 @@ class DroppedBundles:
 
 
 def _written_ns(folder: Path) -> dict[str, int]:
+    """Returns when each document in a folder was last written, renamed or touched."""
     written = {}
     for path in folder.iterdir():
         if is_document_name(path.name):

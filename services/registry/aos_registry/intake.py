@@ -111,6 +111,7 @@ class Intake:
         return ProjectRevision(number, loaded.digest, loaded.project)
 
     def _stored(self, project: str, loaded: LoadedBundle, files: Mapping[str, bytes]) -> int:
+        """Stores a checked project as its next revision, whose number is returned."""
         assert loaded.project is not None
         names = tuple(skill.name for skill in loaded.project.skills)
         documents = {name: files[name] for name in loaded.files}

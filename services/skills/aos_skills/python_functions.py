@@ -88,6 +88,7 @@ class PythonAdapter:
             self._loop.call_soon_threadsafe(self._loop.stop)
 
     def _place(self) -> str:
+        """File and line at which the function that runs stands, or awaits something."""
         frames, awaiting = [], self._task.get_coro() if self._task is not None else None
         while (frame := getattr(awaiting, "cr_frame", None)) is not None:
             frames.append((frame, frame.f_lineno))
@@ -226,6 +227,7 @@ class PythonAdapter:
 
 
 def _own_names(module: ModuleType) -> list[str]:
+    """The functions and classes that a module defines itself, with the methods of the classes."""
     own: list[str] = []
     for name, value in vars(module).items():
         if name.startswith("_") or getattr(value, "__module__", None) != module.__name__:

@@ -1,3 +1,5 @@
+"""The missions of a solver, one or one after the other: how each begins or is taken up, and runs."""
+
 import asyncio
 import contextlib
 import logging
@@ -163,11 +165,13 @@ class MissionRunner:
 
     @property
     def _runs(self) -> bool:
+        """Says whether a mission runs, or one that has begun is to be taken up."""
         if self.mission is not None:
             return self.mission.state.phase != "ended"
         return self.is_interrupted
 
     def _last_drift(self) -> DriftTests | None:
+        """The tests of the mission before, which go over to the next one."""
         if self.mission is not None:
             return self.mission.drift
         book = self._books.newest
@@ -193,12 +197,14 @@ class MissionRunner:
         return SteeringError(f"the mission does not begin: {self._unwanted}", hint="Start it once more")
 
     async def _begin_only(self) -> None:
+        """Begins the only mission of a system that ends with it, or takes it up."""
         book = self._books.newest
         assert book is not None
         running = await self._unless_given_up(self._first_model())
         self._begin(book, running, None, earlier=await self._earlier(book, running))
 
     async def _earlier(self, book: Logbook, running: RunningModel) -> tuple[Earlier, ...]:
+        """The models that the mission had before, as far as its belief has come through them."""
         documents = self._registry.documents
         return await earlier_models(
             book.memory, running, documents, self._settings, lambda text: log.info("%s", text)
@@ -289,4 +295,5 @@ class MissionRunner:
         )
 
     def _settings_as(self, kind: type[T]) -> T:
+        """The part of the settings that has the fields of this kind."""
         return msgspec.convert(self._settings, kind, from_attributes=True)

@@ -162,6 +162,7 @@ class _Solver:
         self._tell_compiling("")
 
     def _tell_compiling(self, remark: str) -> None:
+        """Tells people that the first mission waits for the compiler, or does so no more."""
         if self._missions.mission is None and self._missions.compiling != remark:
             self._missions.compiling = remark
             if (state := self._missions.state).phase != "ended":

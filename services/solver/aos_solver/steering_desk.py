@@ -82,6 +82,7 @@ async def until_stopped(mission: Mission, reason: str, ended: asyncio.Event, bus
 
 
 async def _cancel(mission: Mission, reason: str, bus: Bus, keys: Keys) -> None:
+    """Cancels what the mission has asked for, whoever serves it."""
     if mission.activation is None:
         return
     cancel = Cancel(reason, mission.activation, mission.state.epoch)

@@ -1,3 +1,5 @@
+"""The solver's answers to studies of its missions, by an engine that no mission asks."""
+
 import asyncio
 from pathlib import Path
 

@@ -1,3 +1,5 @@
+"""The gateway as an ASGI application: access first, then the operations, then the page."""
+
 from collections.abc import Awaitable, Callable
 from http import HTTPStatus
 
@@ -84,6 +86,7 @@ class _Guarded:
 
 
 async def _metrics(gateway: Gateway) -> Content:
+    """The metrics of missions, for Prometheus."""
     assert gateway.metrics is not None
     return Content(await gateway.metrics.text(), EXPOSITION)
 
@@ -115,6 +118,7 @@ async def _no_operation(request: Request, error: Exception) -> Response:
 
 
 def _methods_at(request: Request) -> list[str]:
+    """The methods of all routes to the request's path."""
     routes = [route for route in request.app.routes if isinstance(route, Route)]
     there = (route for route in routes if route.matches(request.scope)[0] is not Match.NONE)
     return sorted({method for route in there for method in route.methods or ()})

@@ -1,3 +1,5 @@
+"""The documents of a mission: the files of each revision, and the lines that a step is about."""
+
 import asyncio
 import sqlite3
 from contextlib import closing

@@ -73,6 +73,7 @@ async def stream(
 def _renew(
     upcoming: dict[asyncio.Task[Frame], bool], queue: asyncio.Queue[Frame], listing: AsyncIterator[Frame]
 ) -> None:
+    """Awaits one frame of each source."""
     if True not in upcoming.values():
         upcoming[asyncio.ensure_future(queue.get())] = True
     if False not in upcoming.values():
@@ -97,6 +98,7 @@ async def _past(run: Run, mission: str, since: int) -> AsyncIterator[Frame]:
 
 
 async def _end(run: Run, mission: str) -> Frame | None:
+    """The state of a mission that is over, which nobody on a bus tells any more."""
     state = await run.last_state(mission)
     return frame_of_state(state) if state is not None and state.phase == "ended" else None
 

@@ -181,6 +181,7 @@ def _projects(gateway: Gateway) -> tuple[ProjectEntry, ...]:
 
 
 async def _loaded(name: str, body: bytes) -> tuple[dict[str, bytes], LoadedBundle]:
+    """Returns the files of an upload, and the bundle that they are."""
     files, remarks = await asyncio.to_thread(files_of_upload, name, body)
     return files, await asyncio.to_thread(load_files, files, name=name, remarks=remarks)
 

@@ -1,3 +1,5 @@
+"""Pictures of states, each drawn in a process of its own, and those that were drawn last."""
+
 import asyncio
 from collections import OrderedDict
 from typing import Any

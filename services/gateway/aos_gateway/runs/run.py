@@ -177,6 +177,7 @@ class KeptRun(Run):
         return self.is_running and self.directory.interrupt(self.record.pid)
 
     def _goes_on_again(self) -> bool:
+        """Says whether a run whose aos-up was killed was taken up, and may be over again."""
         if self._last is None or self._has_summary:
             return False
         return self.directory.is_held or self.directory.read_summary() is not None
@@ -293,6 +294,7 @@ class RemoteRun(Run):
 
 
 async def _until_not(holds: Callable[[], bool]) -> None:
+    """Looks at files, which tell nobody that they change."""
     does_hold = True
     while does_hold:
         await asyncio.sleep(_LOOK_S)

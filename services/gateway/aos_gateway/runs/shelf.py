@@ -1,3 +1,5 @@
+"""The runs that the gateway knows, by the names of runs and of missions."""
+
 import asyncio
 import threading
 import time

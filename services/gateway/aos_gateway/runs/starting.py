@@ -1,3 +1,5 @@
+"""Systems that the gateway starts, and that go on when the gateway ends."""
+
 import asyncio
 import os
 import subprocess
@@ -33,6 +35,7 @@ async def start_system(shelf: RunShelf, deploy_file: Path, runs: Path, options: 
 
 
 def _reap(process: subprocess.Popen[bytes]) -> None:
+    """Takes the exit code when the process ends, so that no zombie stays."""
     loop = asyncio.get_running_loop()
     handle = os.pidfd_open(process.pid)
 

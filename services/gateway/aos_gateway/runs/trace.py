@@ -203,6 +203,7 @@ def _second(record: DecisionRecord) -> ActionValue | None:
 
 
 def _is_proven(chosen: ActionValue, second: ActionValue) -> bool:
+    """Returns whether what is proven of both actions tells that the chosen one is no worse."""
     least, most = chosen.at_least, second.at_most
     return least is not None and most is not None and least >= most
 

@@ -174,6 +174,7 @@ class _Activation:
         )
 
     async def _observed_stop(self, error: AosError) -> _Observation:
+        """Returns what the rules make of a skill that `stop_when` has stopped, which is no failure."""
         if self._has_missed:
             raise self._missed_topics()
         observed = await self._evaluator.finish({}, "stopped", self.stop.reason)

@@ -1,3 +1,5 @@
+"""The topics of one activation: each message that was sent before its call ended is evaluated, in order."""
+
 import asyncio
 import logging
 from contextlib import suppress
@@ -63,6 +65,7 @@ class HeardTopics:
             self._has_received.set()
 
     async def _evaluate(self, messages: list[tuple[str, dict[str, Any]]]) -> None:
+        """Hands messages over to mapping code, and has the skill stopped where one of them says so."""
         while messages and self.fault is None:
             try:
                 taken = await self._evaluator.take(messages)

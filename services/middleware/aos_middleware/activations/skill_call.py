@@ -147,6 +147,7 @@ class Call:
         return True
 
     def _note_stray(self, kind: str, reply: SkillResult | AosError) -> None:
+        """A reply that is not used is kept for people."""
         path, request = self._path, self._request
         text = str(reply) if isinstance(reply, AosError) else f"a result for {reply.id}"
         _log.warning("%s: a %s reply for %s is not used: %s", path, kind, request.id, text)

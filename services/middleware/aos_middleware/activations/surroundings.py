@@ -1,3 +1,5 @@
+"""The outside of an activation, which the service makes once."""
+
 from collections.abc import Callable
 from typing import NamedTuple
 

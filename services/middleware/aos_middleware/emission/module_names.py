@@ -1,3 +1,5 @@
+"""The names of a mapping's module beside its functions: shared code, low-level values, imports."""
+
 import ast
 import builtins
 import keyword

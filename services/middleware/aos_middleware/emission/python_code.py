@@ -161,6 +161,7 @@ def _without_empty_ends(lines: list[CodeLine]) -> tuple[CodeLine, ...]:
 
 
 def _lines_inside_texts(code: str) -> frozenset[int]:
+    """The numbers of the lines that begin inside a text literal, whose indentation is part of the text."""
     inside: set[int] = set()
     opened = getattr(tokenize, "FSTRING_START", -1)
     closed = getattr(tokenize, "FSTRING_END", -1)

@@ -86,6 +86,7 @@ class Sections:
         return [*self._variable_functions(), *([stop_when] if stop_when is not None else [])]
 
     def _variable_functions(self) -> list[Function]:
+        """A function for each local variable whose value comes from outside during the activation."""
         functions = []
         for variable in self._snippets.variables.values():
             if variable.source is LocalSource.PARAMETER:

@@ -27,6 +27,7 @@ def default_constants(project: Project) -> dict[str, str]:
 
 
 def _defaults(environment: Environment, compounds: Mapping[str, CompoundType]) -> Iterator[tuple[str, str]]:
+    """Paths with the text of what is assigned to them, in the order of effect."""
     for variable in environment.variables:
         yield from _field_defaults(variable.name, variable.type, compounds)
         if variable.default_value is not None:

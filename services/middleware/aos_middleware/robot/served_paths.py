@@ -1,3 +1,5 @@
+"""The paths that can be called: liveliness tokens say who answers them."""
+
 import asyncio
 import logging
 from collections import Counter
@@ -54,6 +56,7 @@ class ServedPaths:
                     self._tell()
 
     def _tell(self) -> None:
+        """All that is known of now was heard."""
         self._has_heard.set()
         self._on_change()
 

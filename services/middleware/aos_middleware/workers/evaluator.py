@@ -232,6 +232,7 @@ class Evaluator:
         return f"{without[0].name} has no value, for no message came on {without[0].topic}"
 
     async def _why_it_ended(self, child: Child, limit_s: float) -> MappingFault:
+        """The fault behind a worker that ended instead of answering, from what it left in the log."""
         try:
             async with asyncio.timeout(_END_S):
                 status = await child.wait()
@@ -253,6 +254,7 @@ class Evaluator:
         return text[max(starts) :] if max(starts) >= 0 else ""
 
     def _written_to_log(self) -> str:
+        """The end of what this worker has written to the log."""
         with self._log_path.open("rb") as log:
             end = log.seek(0, 2)
             log.seek(max(self._log_start_bytes, end - _TRACEBACK_BYTES))

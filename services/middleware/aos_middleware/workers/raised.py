@@ -47,6 +47,7 @@ def raised(
 
 
 def _place(trace: TracebackType | None, file_name: str, lines: list[str]) -> tuple[int, int, str]:
+    """The line and the column, and the text of the expression up to the end of its line."""
     place = (0, 0, "")
     while trace is not None:
         code = trace.tb_frame.f_code

@@ -166,6 +166,7 @@ class LoadedMapping:
             self._silent.discard(name)
 
     def _call(self, function: Function, *message: Any) -> Any:
+        """Calls a generated function with the local variables it names."""
         code: CodeType = function.__code__
         names = code.co_varnames[len(message) : code.co_argcount]
         values = self._values | self._of_skill
@@ -173,6 +174,7 @@ class LoadedMapping:
         return function(*message, **self._last_given)
 
     def _with_constants(self, plain: Any) -> Any:
+        """Plain data with the low-level constants in place of their names, each activation its own copy."""
         constants = self._namespace.get("CONSTANTS", {})
         if isinstance(plain, dict):
             return {name: self._with_constants(value) for name, value in plain.items()}
@@ -190,6 +192,7 @@ class LoadedMapping:
 
 
 def _sendable(field: str, value: Any) -> Any:
+    """The plain data of a field's value."""
     try:
         plain = plain_from(value)
         frames.pack(frames.Begun({field: plain}))
@@ -239,6 +242,7 @@ def _builtins(allowed_imports: tuple[str, ...] | None) -> dict[str, Any]:
 def _answer_of(
     mapping: LoadedMapping | None, question: frames.Question
 ) -> tuple[LoadedMapping | None, bytes]:
+    """The next state of the worker and the frame to send."""
     if isinstance(question, frames.Load) and mapping is None:
         try:
             return LoadedMapping(question), frames.pack(frames.Done())

@@ -1,3 +1,5 @@
+"""The pipes between a worker and its service, out of reach of the code that the worker runs."""
+
 import io
 import os
 import sys

@@ -157,6 +157,7 @@ class Participant:
         return self._topics[name]
 
     def _reading(self, make: Callable[[Listener], Any], take: Callable[[Any], None]) -> Any:
+        """A reader that is made with a listener, and whose data are taken on the event loop."""
         made: list[Any] = []
 
         def on_loop() -> None:

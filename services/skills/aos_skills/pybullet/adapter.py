@@ -1,3 +1,5 @@
+"""A simulated world as an adapter: it runs on a thread of its own, beside the service."""
+
 import asyncio
 import json
 import time

@@ -75,6 +75,7 @@ class ActionClient:
         return ActionEnd(ENDED[end["status"]], end["result"])
 
     async def _listen(self, action: str, type_name: str, goal: bytes, take: Callable[[Fields], None]) -> None:
+        """Has a goal's feedback taken until it is forgotten."""
         if action not in self._takers:
             takers = self._takers[action] = {}
 
@@ -127,6 +128,7 @@ class ActionClient:
             raise not_cancelled(action) from error
 
     def _doubt(self, action: str, goal_id: Fields, result_type: str) -> None:
+        """Holds a goal as one that may move the robot until it has ended or its node has left."""
         ending = self._ask(action, "get_result", {"goal_id": goal_id}, result_type, _ASKED_S)
         self._node.unended.add(action, ending, self._node.service_gone(f"{action}/_action/get_result"))
 

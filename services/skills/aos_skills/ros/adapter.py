@@ -83,6 +83,7 @@ class RosAdapter:
     # --- what there is ---
 
     async def _follow_documents(self) -> None:
+        """Takes in the paths and topics of each revision of the project."""
         async for revision in self.host.revisions():
             known = documented(revision.project)
             for path in known.paths:
@@ -93,6 +94,7 @@ class RosAdapter:
             self._has_new_names.set()
 
     async def _follow_robot(self) -> None:
+        """Serves what the robot serves, listens to what it publishes, whenever that changes."""
         while True:
             self._has_new_names.clear()
             waits = [asyncio.create_task(self.node.changed()), asyncio.create_task(_set(self._has_new_names))]
@@ -136,6 +138,7 @@ class RosAdapter:
                 _log.warning("%s: %s", path, self._why_missing(path, way, kind))
 
     def _why_missing(self, path: str, way: Way, kind: str) -> str:
+        """Tells people which node has left or serves something else, or else which services there are."""
         if kind:
             return f"{way.name} is a{'n' if kind == 'action' else ''} {kind} and no {way.kind}"
         it = "it" if way.name == path else way.name  # Then all paths of a node have one reason.

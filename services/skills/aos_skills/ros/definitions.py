@@ -144,6 +144,7 @@ def _service(package: str, kind: str, short: str, request: str, response: str) -
 
 
 def _parts(name: InterfaceName, text: str) -> list[str]:
+    """The sections of a file between its lines of dashes."""
     sections: list[list[str]] = [[]]
     for line in text.splitlines():
         if line.split("#")[0].strip() == "---":

@@ -126,6 +126,7 @@ class RosTypes:
     # --- types ---
 
     def _know(self, type_name: str, used_by: str = "") -> None:
+        """Reads the files that define a type and all that it uses."""
         if type_name in self._store.fielddefs:
             return
         name = definitions.interface_name(type_name, "msg")
@@ -236,11 +237,13 @@ def _field(name: str, description: Any) -> Field:
 
 
 def _renamed(field: Any) -> Any:
+    """A field whose type, if rosbags calls it `package/srv/msg/X`, is `package/srv/X`."""
     name, description = field
     return name, _mapped(description, lambda base: base, lambda used: used.replace("/srv/msg/", "/srv/"))
 
 
 def _with_uint8(field: Any) -> Any:
+    """A field whose type, if it is `char`, is `uint8`, as in ROS 2."""
     name, description = field
     return name, _mapped(
         description, lambda base: ("uint8", 0) if base[0] == "char" else base, lambda used: used

@@ -100,6 +100,7 @@ class Node(Ros2Node):
         return (await self._server(service, type_name, timeout_s)).type_name
 
     async def _server(self, service: str, type_name: str, timeout_s: float) -> Endpoint:
+        """The node's end of a service, whose type is as it is defined here."""
         server = await self.graph.wait_for(Kind.SERVER, service, timeout_s)
         if server is None:
             raise not_served(f"no ROS 2 node serves {service} in domain {self.domain}", self.services())
@@ -156,6 +157,7 @@ class Node(Ros2Node):
         return endpoint
 
     def _hash(self, topic: str, type_name: str) -> str:
+        """The hash that the topic's publisher uses, if there is one already."""
         for publisher in self.graph.find(Kind.PUBLISHER, topic):
             if publisher.type_name == type_name:
                 self._same_definition(publisher)

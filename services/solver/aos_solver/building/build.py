@@ -196,6 +196,7 @@ class _Build(msgspec.Struct, frozen=True):
 
     @property
     def _precompiled(self) -> list[str]:
+        """The options for what quick builds include, if that is compiled already."""
         if self.kind != "quick":
             return []
         return [
@@ -208,6 +209,7 @@ class _Build(msgspec.Struct, frozen=True):
         return [] if entry is None else [entry]
 
     def _state_bytes(self, model: Path) -> int:
+        """The size of the quickest engine that takes the model's states."""
         mark = _STATE_BYTES_MARK.search(model.read_bytes())
         needed = int(mark[1]) if mark is not None else 0
         if needed > MAX_STATE_BYTES:
@@ -257,6 +259,7 @@ class _Build(msgspec.Struct, frozen=True):
         return internal_error(project, "\n".join(report.outside) or output, status, self._kept_source())
 
     def _limit_error(self) -> ModelError:
+        """The error at the first document code that may compute while it is compiled, if there is any."""
         message = f"the compiler ran out of time or memory on {self.emitted.project}"
         suspects = (piece for piece in self.emitted.pieces if _COMPILE_TIME_CODE.search(piece.text))
         spans = tuple(piece.locate(1, 1) for piece in suspects)
@@ -264,6 +267,7 @@ class _Build(msgspec.Struct, frozen=True):
         return ModelError(message, code="AOS202", hint=LIMIT_HINT, diagnostics=found)
 
     def _kept_source(self) -> Path:
+        """The emitted file at a place where it can be looked at."""
         kept = self.cache.directory / f"failed-{self.emitted.digest[:16]}.cpp"
         kept.write_text(self.emitted.cpp)
         return kept

@@ -117,6 +117,7 @@ class BuildCache:
                 raise
 
     def _remove_old(self) -> None:
+        """Removes what killed builds have left, and what is beyond the size of the cache."""
         kept: list[tuple[int, Path]] = []
         for path in self.directory.glob("*-*"):
             with contextlib.suppress(OSError):

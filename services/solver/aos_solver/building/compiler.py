@@ -137,6 +137,7 @@ def _candidates(environment: Mapping[str, str]) -> Iterator[tuple[str, ...]]:
 
 
 async def _examine(command: tuple[str, ...]) -> tuple[Compiler | None, str]:
+    """The compiler, or why it cannot be used."""
     name = shlex.join(command)
     try:
         child = await Child.start([*command, "--version"], stdout=PIPE, stderr=asyncio.subprocess.DEVNULL)

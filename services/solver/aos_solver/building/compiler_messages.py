@@ -1,3 +1,5 @@
+"""The compiler's messages as diagnostics at the documents' places."""
+
 import math
 import re
 
@@ -130,10 +132,12 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
 
 
 def _declared_with(type_name: str, code: str) -> list[str]:
+    """The name that code declares, which begins with the name of its type."""
     return re.findall(rf"^{type_name}(?:<.*?>)?[&*\s]+(\w+)\s*[=;{{]", code)
 
 
 def _may_be_meant(hint: str, emitted: EmittedModel) -> bool:
+    """Returns whether a document may name what the compiler suggests, which knows all of C's library."""
     suggested = re.fullmatch(r"Did you mean `(\w+)`\?", hint)
     if suggested is None or hasattr(math, suggested[1]):
         return True
@@ -197,6 +201,7 @@ def _document_place(place: tuple[str, int, int], source_name: str, emitted: Emit
 
 
 def _plain(text: str) -> tuple[str, str]:
+    """The message in the documents' terms, and the compiler's suggestion as a hint."""
     text = re.sub(r"\bmodel::(?:aos_skill_\w+::)?", "", text)
     text = re.sub(r"\.<lambda\([^)]*\)>(?=\()", "", _WITHIN.sub("", text))
     text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")

@@ -104,6 +104,7 @@ def _confinement(compiler: Compiler, directory: Path, cache: Path | None, given:
 
 
 def _zig_cache() -> Path:
+    """The folder in which zig keeps its C++ library, as zig itself chooses it."""
     home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     folder = Path(os.environ.get("ZIG_GLOBAL_CACHE_DIR") or Path(home) / "zig")
     folder.mkdir(parents=True, exist_ok=True)

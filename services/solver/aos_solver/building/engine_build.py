@@ -132,6 +132,7 @@ def circumstances(compiler: Compiler) -> str:
 
 
 def _stamps(folder: str | Path) -> Iterator[tuple[str, int, int]]:
+    """Yields the path of each source below a folder, the time of its last change, and its size."""
     with os.scandir(folder) as found:
         for each in found:
             if each.is_dir():

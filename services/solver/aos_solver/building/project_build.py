@@ -1,3 +1,5 @@
+"""The build of a project: lowered, emitted, compiled, with the values of its mission parameters."""
+
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path

@@ -1,3 +1,5 @@
+"""The engine of one model: all questions that can be asked of its child process."""
+
 from aos_solver.child.process.engine_child import ImpossiblePolicy
 from aos_solver.child.questions.beliefs import BeliefQuestions
 from aos_solver.child.questions.listing import ListingQuestions

@@ -1,3 +1,5 @@
+"""The planning budget of a mission, and the seed of each decision."""
+
 from __future__ import annotations
 
 import msgspec

@@ -85,6 +85,7 @@ class _Lines:
 
 
 def _wrapped(line: str) -> list[str]:
+    """A line of ours as lines of at most `_MAX_COLUMNS`, where its commas allow that."""
     lines: list[str] = []
     indent = " " * (len(line) - len(line.lstrip()) + 4)
     while len(line) > _MAX_COLUMNS and not line.lstrip().startswith(("//", "#")):

@@ -111,6 +111,7 @@ def emit(program: Program) -> EmittedModel:
 
 
 def _laid_out(program: Program) -> tuple[str, dict[int, tuple[Origin, ...]]]:
+    """The file, and where each line of a piece went."""
     own_names = _own_names(program)
     text = _templates().get_template("model.cpp.jinja").render(
         program=program,
@@ -209,6 +210,7 @@ def _state_digest(program: Program) -> str:
 
 
 def _shape(type_text: str) -> str:
+    """A type without the capacity of its vectors, which depends on all code."""
     return re.sub(r"(aos::Vector<.*), \d+>", r"\1>", type_text)
 
 
@@ -216,6 +218,7 @@ def _shape(type_text: str) -> str:
 
 
 def _number_literal(number: float) -> str:
+    """A C++ literal of exactly this number, which is finite."""
     return repr(float(number))
 
 

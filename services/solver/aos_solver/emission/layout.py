@@ -1,3 +1,5 @@
+"""The layout of a model's state: what tells whether a variable is the same in another model."""
+
 from __future__ import annotations
 
 import json
@@ -81,6 +83,7 @@ def saved_variables(program: Program) -> tuple[Variable, ...]:
 
 
 def _parts(program: Program) -> dict[str, str]:
+    """The shapes of the project's own types."""
     parts = {enum.name: f"{enum.name}{json.dumps(enum.values)}" for enum in program.enums}
     for compound in program.compounds:  # Each stands behind those that it holds.
         fields = [f"{field.name}: {_shape(field.type, parts)}" for field in compound.fields]

@@ -122,6 +122,7 @@ def _sets(code: str, name: str) -> bool:
 
 
 def _line_of(piece: Piece, number: int, emitted: EmittedModel) -> int:
+    """The index of the emitted file's line that is a line of the piece."""
     return next(
         line - 1
         for line, origins in emitted.origins.items()

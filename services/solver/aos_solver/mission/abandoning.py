@@ -1,3 +1,5 @@
+"""Work whose result is not needed any more, given up while it goes on."""
+
 import asyncio
 from collections.abc import Coroutine
 from contextlib import suppress

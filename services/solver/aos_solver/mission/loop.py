@@ -225,12 +225,14 @@ class Mission:
         return self._goes_on()
 
     def _goes_on(self) -> bool:
+        """Ends the mission where its failures call for that."""
         if self._failures.to_end:
             self._reports.end(Ending.SKILLS_FAILED, self._failures.to_end)
             return False
         return not self._is_stopped()
 
     def _is_stopped(self) -> bool:
+        """Ends the mission where somebody wants that."""
         if self._to_stop:
             self._reports.end(Ending.CANCELLED, self._to_stop)
         return bool(self._to_stop)
@@ -259,6 +261,7 @@ class Mission:
         return True
 
     def _ending(self) -> Ending | None:
+        """The ending that the belief calls for, or else the one that the world has come to."""
         return ending_of_belief(self.belief, self.state.step, self._terms.limits) or self._ports.world_ending
 
     async def _choose(self) -> Choice | Ended | None:
@@ -285,6 +288,7 @@ class Mission:
         return None
 
     async def _next(self, step: int, asked: Asked | None) -> Choice | Ended | Held | Refused:
+        """The choice of the action that somebody has asked for, or else the mission's own."""
         if asked is not None:
             return await self._chooser.asked_for(self._model, step, asked)
         return await self._chooser.choose(self._model, step, self.belief)
@@ -304,6 +308,7 @@ class Mission:
         await self._holding.until(why, goes_on, adopts=adopts)
 
     def _decide(self, choice: Choice) -> DecisionRecord:
+        """The record of a decision, which spends what the action risks."""
         risks, index = choice.risks, choice.plan.index
         actions = self._model.engine.description.actions
         told = {value.action for value in choice.plan.actions}

@@ -163,6 +163,7 @@ class Succession:
         return await Engine.start(built, seed=drawn.seed)
 
     async def _at_the_end(self, running: RunningModel, begun: Begun, memory: MissionMemory) -> _Kept:
+        """Returns what is believed after a mission that is over, and closes its engine."""
         assert memory.begun is not None
         steps = memory.steps
         if memory.pending is not None and memory.pending.outcome is not None:

@@ -1,3 +1,5 @@
+"""A POMDP as numbers: every state, every outcome of every action."""
+
 from __future__ import annotations
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+"""Runs the solver on a model: bounds over time, and the alpha vectors in the end."""
+
 import asyncio
 import tempfile
 from collections.abc import Callable

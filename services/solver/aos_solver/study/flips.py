@@ -157,6 +157,7 @@ def _crossings(points: Sequence[tuple[float, float]]) -> Iterator[float]:
 
 
 def _along(points: Sequence[tuple[float, float]], place: float) -> float:
+    """The value at a place between the first point and the last one, by straight lines."""
     (left, low), (right, high) = next(
         pair for pair in itertools.pairwise(points) if pair[0][0] <= place <= pair[1][0]
     )

@@ -64,6 +64,7 @@ class _Growing:
         return TreeBranch(action, value.q, value.n, value.stderr, tuple(after))
 
     async def _believe(self, path: Sequence[tuple[str, str]]) -> BeliefSummary:
+        """The belief after these actions and responses."""
         belief = await self._replay.engine.take_back()
         refuted_below = self._replay.past.refuted_below
         for number, (action, response) in enumerate(path, len(self._replay.past) + 1):

@@ -117,6 +117,7 @@ def _restricted(engine: Engine, query: WhatIfQuery, was: Restriction) -> Restric
 async def _engine(
     replay: ReplayedMission, changes: tuple[str, ...], documents: OtherDocuments
 ) -> AsyncIterator[tuple[Engine, tuple[str, ...]]]:
+    """The replay's engine, or one of changed documents with its posterior after the same steps."""
     if not changes:
         yield replay.engine, ()
         return

@@ -171,6 +171,7 @@ class Reasons:
     async def _terms(
         self, other: str, value: float, other_value: float
     ) -> tuple[tuple[ValueTerm, ...], float, float]:
+        """The parts of both values by statement, and what is not told apart of each."""
         try:
             traced = await self._traced.of(await self._replay.model())
             await traced.engine.import_beliefs(await self._engine.export_beliefs())
@@ -200,6 +201,7 @@ class Reasons:
 
 
 def _joined(traced: TracedEngine, one: RewardTerms, two: RewardTerms) -> tuple[ValueTerm, ...]:
+    """The terms of two values by their places, those that differ most first."""
     parts: dict[str, list[float]] = {}
     for column, found in enumerate((one, two)):
         for term in found.terms:

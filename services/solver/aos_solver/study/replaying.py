@@ -187,6 +187,7 @@ class ReplayedMission:
         return RunningModel(revision, engine)
 
     async def _begin(self, begun: messages.MissionBegun) -> messages.BeliefSummary:
+        """Begins the mission, or takes it up as another solver did, with the models of that time."""
         await self.close()
         running = await self._engine(begun.revision, begun.model_digest)
         self._running, self.engine = running, running.engine
@@ -200,6 +201,7 @@ class ReplayedMission:
         return await self.engine.summary()
 
     async def _earlier(self, begun: messages.MissionBegun) -> tuple[Earlier, ...]:
+        """The models through which the solver of that time had brought the belief."""
         if not begun.is_retraced:
             return ()
         stretches: tuple[Stretch, ...] = ()
@@ -285,4 +287,5 @@ class ReplayedMission:
 
 
 def _is_plain(start: messages.StartMission) -> bool:
+    """Says whether a mission begins with the initial belief, now."""
     return start.belief == "initial" and not start.idle and not start.given

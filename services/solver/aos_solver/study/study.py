@@ -87,6 +87,7 @@ class Study:
     async def _asked(
         self, query: WhyQuery | WhatIfQuery | TreeQuery
     ) -> AsyncIterator[tuple[ReplayedMission, DecisionRecord]]:
+        """A replay at the decision of a question, which has it alone while it is answered."""
         async with self._asking:
             at_decision = await self._at(query.mission, query.step)
             try:
@@ -98,6 +99,7 @@ class Study:
                 raise
 
     async def _at(self, mission: str, step: int) -> tuple[ReplayedMission, DecisionRecord]:
+        """A replay at the belief of a step's decision, from where the last question has left it if it can."""
         recorded = await self._source.recorded(mission)
         decision = recorded.decision(step)
         replay = self._replay

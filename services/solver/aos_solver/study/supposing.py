@@ -102,6 +102,7 @@ def changed_files(
 
 
 def _place_of_number(text: str, place: str, column: int | None) -> tuple[int, int]:
+    """The start and end of a line's only number, or of the one at a column."""
     found = []
     for match in _NUMBER.finditer(text):
         start, before = match.start(), text[: match.start()].rstrip()

@@ -1,3 +1,5 @@
+"""The values of actions at a belief that a study supposes: exact where the decision was, else searched."""
+
 from __future__ import annotations
 
 import math

@@ -1,3 +1,5 @@
+"""The Panda arm, moved joint by joint or by the point between its finger tips."""
+
 import itertools
 import math
 from collections.abc import Callable
@@ -105,6 +107,7 @@ class Arm:
         )
 
     def _solved(self, place: tuple[float, ...]) -> list[float]:
+        """Angles that bring the tip to a place with the hand pointing down."""
         x, y, yaw = self._base_place()
         ahead, left = place[0] - x, place[1] - y
         foot_x, foot_y, foot_z = self._mount_m

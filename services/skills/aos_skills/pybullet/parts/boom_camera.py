@@ -43,6 +43,7 @@ def top_seen(
 
 
 def _photograph(scene: Scene, eye: Vector, looks_at: Vector) -> tuple[Colors, npt.NDArray[np.float64]]:
+    """The colors of a picture, and the place in the world, in metres, that each pixel shows."""
     width, height = SIZE
     _, _, pixels, depth, _ = scene.client.getCameraImage(
         width,

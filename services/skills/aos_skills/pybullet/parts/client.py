@@ -21,6 +21,7 @@ def connect() -> BulletClient:
 
 @contextmanager
 def _silent_stdout() -> Iterator[None]:
+    """C buffers what it prints, so it is flushed on either side."""
     flush_c = ctypes.CDLL(None).fflush
     flush_c(None)
     stdout = os.dup(1)

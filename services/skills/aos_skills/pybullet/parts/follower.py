@@ -65,6 +65,7 @@ def follow(
 
 
 def _dense(way: list[Point]) -> list[Point]:
+    """The way as points 2 cm apart."""
     points: list[Point] = [way[0]]
     for start, end in itertools.pairwise(way):
         count = max(math.ceil(math.dist(start, end) / 0.02), 1)

@@ -1,3 +1,5 @@
+"""Ways on a floor map: A* over a grid whose cells cost more near obstacles, then pulled straight."""
+
 from __future__ import annotations
 
 import math
@@ -87,6 +89,7 @@ class FloorMap:
         return min(max(column, 0), width - 1), min(max(row, 0), height - 1)
 
     def _graph(self, begin: Cell) -> nx.Graph[Cell]:
+        """Free cells and their eight neighbours."""
         room = self._clearance - self._radius_m
         is_free = room >= 0
         is_free[begin] = True
@@ -125,6 +128,7 @@ class FloorMap:
 def _shifted(
     grid: npt.NDArray[np.bool_], step: tuple[int, int]
 ) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
+    """The parts of a grid that lie over each other when it is moved by a step."""
     width, height = grid.shape
     x, y = step
     here = (slice(0, width - x), slice(max(0, -y), height - max(0, y)))

@@ -1,3 +1,5 @@
+"""Message classes of ROS 1, installed or made from the user's files. Values are dicts of fields."""
+
 from __future__ import annotations
 
 import tempfile

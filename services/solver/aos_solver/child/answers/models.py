@@ -1,3 +1,5 @@
+"""The answers of an engine child about its model, its plans and its values, as typed data."""
+
 from typing import Any
 
 import msgspec

@@ -1,3 +1,5 @@
+"""The answers of an engine child about simulated worlds and samples of steps, as typed data."""
+
 import msgspec
 
 

@@ -223,6 +223,7 @@ class Asking(Closing):
             raise AssertionError
 
     async def _asked(self, command: str, kind: type[A], deadline_s: float) -> A:
+        """The answer of the child, or of another one that is started with the same belief."""
         if self._child is None or not self._child.is_running:
             await self._restart_child()
         assert self._child is not None
@@ -238,10 +239,12 @@ class Asking(Closing):
             raise await self._at_its_statement(error, self._changes, [*self._world, command]) from None
 
     async def _at_its_statement(self, fault: AosError, changes: int, commands: Sequence[str]) -> AosError:
+        """The fault at its statement, if a replay of the commands finds it after so many changes."""
         commands = [*self._restoration(changes), *commands]
         return await at_its_statement(fault, self._built, self._start, commands)
 
     async def _begin_child(self) -> None:
+        """Starts a child on the initial belief, and another one where it is killed meanwhile."""
         for again in range(_KILLED_TIMES + 1):
             try:
                 return await self._start_child()

@@ -1,3 +1,5 @@
+"""The questions about what is believed, and the observations that change it."""
+
 import logging
 from collections.abc import Mapping
 from typing import Any
@@ -127,6 +129,7 @@ class BeliefQuestions(Asking):
     async def _corrected(
         self, action: str, question: Mapping[str, Any], local_variables: Mapping[str, str] | None
     ) -> BeliefUpdate:
+        """The answer to an update, with the local variables where the skill's documents want them."""
         wanted = self._built.emitted.locals.get(self.description.actions[self.index_of(action)].skill)
         command = command_line("update", **question)
         if wanted is None or local_variables is None:

@@ -1,3 +1,5 @@
+"""The questions of listing: which states there are, and how the actions lead to them."""
+
 from aos_solver.child.answers.models import Listed, Reach, WrittenListing
 from aos_solver.child.lines.command_line import command_line
 from aos_solver.child.questions.asking import Asking

@@ -1,3 +1,5 @@
+"""The questions of a mission about its decisions: plans, risks, the way to a goal."""
+
 from collections.abc import Sequence
 from typing import Literal
 

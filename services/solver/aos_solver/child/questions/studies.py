@@ -1,3 +1,5 @@
+"""The questions of a study: beliefs that are supposed, and the rewards behind a value."""
+
 from aos_protocol.messages import BeliefSummary
 from aos_solver.child.answers.beliefs import Believed
 from aos_solver.child.answers.models import ExactValues, RewardTerms

@@ -1,3 +1,5 @@
+"""The questions by which an engine of other documents takes a mission over."""
+
 from collections.abc import Iterator
 
 import msgspec

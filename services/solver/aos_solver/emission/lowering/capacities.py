@@ -1,3 +1,5 @@
+"""The lengths that the vectors of a state can have: read off what the documents assign to them."""
+
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -97,6 +99,7 @@ class Capacities:
             self._alike.update(dict.fromkeys(joined, joined))
 
     def _in_numbers(self, code: str) -> str:
+        """The code with the constants' values in place of their names."""
         return self._constant.sub(lambda name: self._numbers[name[0]], code) if self._constant else code
 
     def _fills(self, call: Call) -> bool:
@@ -175,6 +178,7 @@ def _in_place_of_each_other(cpp: Cpp, code: str) -> Iterator[tuple[Mention, Ment
 
 
 def _key(path: tuple[str, ...]) -> tuple[str, int]:
+    """The name of a variable or field at the end of a path, and the level of what is indexed there."""
     last = _last_name(path)
     return path[last], len(path) - last - 1
 
@@ -184,6 +188,7 @@ def _last_name(path: tuple[str, ...]) -> int:
 
 
 def _list_lengths(text: str) -> list[int]:
+    """The most elements at each depth of a braced list, which `text` begins with."""
     lengths: list[int] = []
     open_lists: list[int] = []
     parentheses = 0

@@ -1,3 +1,5 @@
+"""Document code: which copies of the state each section sees and changes, and its functions."""
+
 import copy
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -156,6 +158,7 @@ class Pieces:
 
 
 def _without_texts(cpp: Cpp) -> str:
+    """The code with comments and literals blanked."""
     characters = list(strip_comments(cpp.code))
     for literal in cpp.literals:
         for index in range(literal.start, literal.end):
@@ -270,6 +273,7 @@ _RESULTS = frozenset({
 
 
 def _drawing(functions: frozenset[str]) -> Scope:
+    """Code that may call functions that draw."""
     return Scope(drawing=Scope().drawing | functions)
 
 

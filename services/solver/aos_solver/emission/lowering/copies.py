@@ -91,6 +91,7 @@ def copies_of(model: SkillModel, environment: Environment) -> Copies:
 def _reads_changed(
     section: tuple[Assignment, ...], older: tuple[str, ...], newer: str, names: _Names
 ) -> bool:
+    """Returns whether the section may read an older copy of a variable after it has changed the newer one."""
     if any(assignment.over_previous or assignment.over_next for assignment in section):
         return True
     uses = _uses(section, older, newer, names)
@@ -146,6 +147,7 @@ def _variable(mention: Mention) -> str:
 
 
 def _makes_handle(mention: Mention) -> bool:
+    """Returns whether the mention's value may be looked at later, when the variable has changed."""
     is_counted = mention.method in ("size", "empty")
     is_method = bool(mention.method) and mention.method not in _READING_METHODS
     is_object = _variable(mention) == _WHOLE_STATE and mention.path[2:] in ((), ("[]",)) and not is_counted
@@ -153,6 +155,7 @@ def _makes_handle(mention: Mention) -> bool:
 
 
 def _bound(cpp: Cpp, names: _Names) -> Iterator[Extent]:
+    """Yields the expressions that references, pointers, iterators and views are made of."""
     types = names.types | {enum.name for enum in cpp.declarations if enum.kind is DeclarationKind.ENUM}
     for declaration in cpp.declarations:
         if declaration.initial is None:
@@ -181,6 +184,7 @@ def _gives_value(call: Call, names: _Names) -> bool:
 
 
 def _given_to(functions: frozenset[str], cpp: Cpp) -> Iterator[Extent]:
+    """The arguments of calls of these functions."""
     for call in cpp.calls:
         if call.name[-1:] and call.name[-1] in functions:
             yield from call.arguments

@@ -244,6 +244,7 @@ class _Lowering:
     def _with_goal_conditions(
         self, special_states: tuple[SpecialState, ...], skills: tuple[LoweredSkill, ...]
     ) -> tuple[tuple[SpecialState, ...], tuple[LoweredSkill, ...]]:
+        """Adds the code that counts conditions, where a reward or goal has several."""
         code, replace = self._code, msgspec.structs.replace
         counted = []
         for special, lowered in zip(self._project.environment.special_states, special_states, strict=True):
@@ -309,6 +310,7 @@ def skills_looked_for(project: Project) -> tuple[str, ...]:
 
 
 def _without_absent(project: Project, absent: tuple[str, ...]) -> Project:
+    """The project without the code that runs for absent skills only, whose parameters nobody knows."""
 
     def cut(snippet: Snippet | None) -> Snippet | None:
         return snippet and replace(snippet, code=without_null(snippet.code, absent))
@@ -330,6 +332,7 @@ def _without_absent(project: Project, absent: tuple[str, ...]) -> Project:
 
 
 def _locals(mapping: AbstractionMapping, skill: LoweredSkill) -> tuple[Local, ...]:
+    """The local variables that a correction needs."""
     needed = set(skill.reported)
     if skill.given_observation is not None:
         needed |= skill.given_observation.names - {parameter.name for parameter in skill.parameters}

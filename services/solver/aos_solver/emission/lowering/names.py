@@ -1,3 +1,5 @@
+"""The check that the documents' names can be names in C++."""
+
 from collections.abc import Iterator
 
 from aos_language.cpp.keywords import CPP_KEYWORDS

@@ -123,6 +123,7 @@ def _read_without_observations(
 
 
 def _is_opaque(project: Project) -> bool:
+    """Returns whether some code hides what flows where."""
     snippets = (snippet for code in _sections(project) for snippet, _ in snippets_of(code))
     return any(flows_of(read_cpp(snippet.code)).is_opaque for snippet in snippets)
 

@@ -72,6 +72,7 @@ class Changes:
             self.object_types.add(type_name)
 
     def _changed_by_shared_code(self, cpp: Cpp) -> dict[int, set[str]]:
+        """The members that a shared function changes, for each place where it is given the whole state."""
         found: dict[int, set[str]] = {}
         own = {declaration.name for declaration in cpp.declarations}
         for call in cpp.calls:
@@ -178,6 +179,7 @@ def _passed_to_functions(cpp: Cpp, reading: frozenset[str]) -> Iterator[range]:
 
 
 def _changed_by_lambdas(cpp: Cpp, passed_on: list[range]) -> dict[int, set[str]]:
+    """The members that a lambda of the code changes, for each place where it is given the whole state."""
     lambdas = {
         declaration.name: declaration.initial
         for declaration in cpp.declarations

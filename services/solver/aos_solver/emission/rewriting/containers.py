@@ -84,6 +84,7 @@ def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
 
 
 def _is_plain_lambda(cpp: Cpp, declaration: Declaration) -> bool:
+    """Returns whether a variable is a lambda for good, and one that does not call itself."""
     initial = declaration.initial
     assert initial is not None
     uses = [mention for mention in cpp.mentions if mention.path[0] == declaration.name]
@@ -103,6 +104,7 @@ def _holds(declaration: Declaration, places: set[int]) -> bool:
 
 
 def _leads_to_state(cpp: Cpp, declaration: Declaration) -> bool:
+    """Returns whether a variable starts with the state, or with a reference or a pointer into it."""
     places = _places_of_state(cpp)
     for earlier in cpp.declarations:
         if earlier is declaration:
@@ -129,6 +131,7 @@ def _is_draw(call: Call) -> bool:
 
 
 def _is_constant(text: str, values: frozenset[str]) -> bool:
+    """Returns whether a text in braces has nothing but literals and `values`."""
     rest = _WORD.sub(lambda word: "" if word[0] in values else word[0], _LITERAL.sub("", text))
     return text.startswith("{") and not rest
 

@@ -46,6 +46,7 @@ def object_edits(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, 
 
 
 def _within_types(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, int, str]]:
+    """Pointers among the arguments of a template or a function's type, and as what a lambda returns."""
     code = strip_comments(cpp.code)
     for name in sorted(object_types):
         pattern = rf"(?<!const )\b{name}\s*\*(?=\s*[,>)])|(?<=->){name}\s*\*|(?<=-> ){name}\s*\*"
@@ -61,6 +62,7 @@ def _within_types(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int,
 
 
 def _is_list(cpp: Cpp, initial: Extent, object_types: frozenset[str]) -> bool:
+    """Returns whether a variable starts as a list of objects, and not as one of them."""
     lists = {f"{name}Objects" for name in object_types}
     return any(
         mention.extent == initial and mention.path[0] in STATES and mention.path[1] in lists
@@ -70,6 +72,7 @@ def _is_list(cpp: Cpp, initial: Extent, object_types: frozenset[str]) -> bool:
 
 
 def _waits_for_its_object(cpp: Cpp, declaration: Declaration) -> bool:
+    """Returns whether a pointer starts without an object, and so without a type to take over."""
     if declaration.kind is not DeclarationKind.VARIABLE:
         return False
     initial = declaration.initial

@@ -185,6 +185,7 @@ class Chooser:
         return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
 
     def _without(self, engine: Engine) -> _Without:
+        """The skills and actions of the model that are set aside or left out."""
         wanted = {**self._passed_over.reasons(), **self._set_aside(), **self._left_out()}
         actions = engine.description.actions
         skills = {action.skill for action in actions}
@@ -291,6 +292,7 @@ def _nothing_left(reasons: Mapping[str, str]) -> str:
 
 
 def _kept_back(plan: Plan, barred: Mapping[str, str]) -> dict[str, str]:
+    """The actions that are worth more than the choice and cannot be carried out now, with the reasons."""
     best = plan.best
 
     def is_worth_more(value: ActionValue) -> bool:
@@ -307,5 +309,6 @@ def _kept_back(plan: Plan, barred: Mapping[str, str]) -> dict[str, str]:
 
 
 def _explained(plan: Plan, reasons: Mapping[str, str], is_cautious: bool, told: list[str]) -> Plan:
+    """The plan, which says why it does without skills and actions, and what else was `told`."""
     texts = [plan.why, *reasons.values(), *([_CAUTIOUSLY] if is_cautious else []), *told]
     return msgspec.structs.replace(plan, why="; ".join(text for text in texts if text))

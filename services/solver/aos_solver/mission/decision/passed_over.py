@@ -83,5 +83,6 @@ class PassedOver:
         self._lost |= self._left(away)
 
     def _left(self, skills: Set[str]) -> set[str]:
+        """Those of the skills that are away and were there before."""
         away = skills & self._around.unavailable.keys()
         return {skill for skill in away if self._around.announced.get(skill)}

@@ -1,3 +1,5 @@
+"""The values of mission parameters in each model of a mission: those that it began with stay."""
+
 from collections.abc import Mapping
 
 import msgspec

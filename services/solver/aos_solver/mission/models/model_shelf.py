@@ -140,6 +140,7 @@ class ModelShelf:
         self.on_ready()
 
     def _end(self, ended: Successor | Engine) -> None:
+        """Closes what nobody asks any more, beside the mission."""
         self._ending.begin(ended.close())
 
     async def first(self) -> RunningModel:

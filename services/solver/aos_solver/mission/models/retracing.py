@@ -1,3 +1,5 @@
+"""The models that a mission had, one after the other, and how a belief goes through them."""
+
 from collections.abc import AsyncIterator, Sequence
 from typing import NamedTuple
 

@@ -160,6 +160,7 @@ class Successor:
                 self._cannot_replay = f"step {self._done + 1} cannot be replayed: {error}"
 
     async def _begin(self, past: Past) -> None:
+        """Goes back to the initial belief, for another past than before."""
         if self._past is not None:
             await self.model.engine.reset_belief()
         self._past, self._done, self._foreign, self._spent_s = past, 0, 0, 0.0

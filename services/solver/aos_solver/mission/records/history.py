@@ -1,3 +1,5 @@
+"""The decision records of a mission, page by page out of its journal."""
+
 import asyncio
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor

@@ -162,4 +162,5 @@ def overrun(update: BeliefUpdate, update_s: float, budget_s: float | None) -> st
 
 
 def _faults_of_monitors(outcome: messages.Outcome) -> list[str]:
+    """Tells people of monitors that gave nothing."""
     return [f"the monitor {name} failed: {text}" for name, text in outcome.monitor_faults.items()]

@@ -119,6 +119,7 @@ def _log_ratio(tilt: float, is_seen: bool, probability: float, doubt: float) -> 
 
 
 def _doubt(probability: float, belief: BeliefSummary) -> float:
+    """The error that a predicted probability may have where a belief is not exact."""
     is_exact = belief.error_bound < 0.5 and belief.states <= _ENUMERATED_STATES
     if is_exact:
         return belief.error_bound

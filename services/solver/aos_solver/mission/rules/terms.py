@@ -1,3 +1,5 @@
+"""The terms that a mission is run on."""
+
 import msgspec
 
 from aos_solver.child.search import Search

@@ -87,6 +87,7 @@ def _perceived(world: Armadillo, name: str) -> tuple[float, float, float] | None
 
 
 def _is_can(colors: Colors) -> npt.NDArray[np.bool_]:
+    """Red or orange, which the table is not."""
     red, _, blue = np.moveaxis(colors, -1, 0)
     is_can: npt.NDArray[np.bool_] = (blue < 0.35 * red) & (red > 60)
     return is_can

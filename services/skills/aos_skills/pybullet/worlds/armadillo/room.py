@@ -1,3 +1,5 @@
+"""The room: floor, walls, tables, cans, and the person with a tray."""
+
 import pybullet
 
 from aos_skills.pybullet.parts.scene import Color, Scene, Vector

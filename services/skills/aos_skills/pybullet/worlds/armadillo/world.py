@@ -66,6 +66,7 @@ class Armadillo(World):
         }
 
     def _state(self) -> dict[str, Any]:
+        """The same in the words of the shipped documents, which do not say where a can is that is served."""
         room = self.room
         places = {name: self._place_of(name) for name in room.cans}
         state: dict[str, Any] = {f"{name}_can_at": place for name, place in places.items() if place}
@@ -98,6 +99,7 @@ class Armadillo(World):
         return next((f"{name.capitalize()}Table" for name in beside), "")
 
     def _watch_person(self) -> None:
+        """Remembers any touch of the person."""
         if self.scene.client.getContactPoints(bodyA=self.robot.body, bodyB=self.room.person):
             self.has_injured = True
 

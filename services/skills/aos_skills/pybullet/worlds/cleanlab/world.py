@@ -87,11 +87,13 @@ class CleanLab(World):
         return None
 
     def _is_standing(self, cup: int) -> bool:
+        """Returns whether the cup stands on a table and is not in the hand."""
         _, _, z = self.scene.place(cup)
         is_upright = z > TABLE_TOP_M and self.scene.uprightness(cup) > UPRIGHT
         return is_upright and not self.robot.gripper.holds(cup)
 
     def _at(self) -> str:
+        """The station or the bin that the robot stands in front of, or nothing."""
         x, y, _ = self.robot.base.place
         places = {**self.file.stations, **self.file.bins}
         near = (name for name, place in places.items() if math.dist((x, y), (place.x, place.y)) < BESIDE_M)

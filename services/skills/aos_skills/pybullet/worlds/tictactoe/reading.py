@@ -63,6 +63,7 @@ def _corners(grey: Picture) -> npt.NDArray[np.float32] | None:
 
 
 def _mark(ink: Picture, row: int, column: int) -> str:
+    """A cross has ink in its middle, a circle only far from it, whether or not its line is closed."""
     top, left = MARGIN_PX + row * CELL_PX + LINE_PX, MARGIN_PX + column * CELL_PX + LINE_PX
     side = CELL_PX - 2 * LINE_PX
     cell = ink[top : top + side, left : left + side]

@@ -139,6 +139,7 @@ class TicTacToe(World):
             self.marks = marked(self.marks, cell, mark)
 
     def _leave_ink(self) -> None:
+        """Leaves ink where the pen touches the board."""
         if not self._is_writing:
             return
         contacts = self.scene.client.getContactPoints(bodyA=self.robot.pen, bodyB=self.board.body)
