@@ -3,7 +3,6 @@
 // per second of processor time.
 #include <ctime>
 
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>

@@ -1,9 +1,7 @@
 // The paper's example, as in deploy/bundles/bench/navigation: a robot that may lose its way visits three places.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <cstdint>
 
 #include "problem.hpp"
 #include "random.hpp"

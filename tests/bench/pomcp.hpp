@@ -3,9 +3,7 @@
 // observations.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <memory>
 

@@ -1,8 +1,6 @@
 // The draws that the problems need, of the engine's random bits: no division, no floating point.
 #pragma once
 
-#include <cstdint>
-
 #include "aos/draws/xoshiro.hpp"
 
 namespace bench {

@@ -5,10 +5,7 @@
 #include <immintrin.h>
 #endif
 
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 #include "problem.hpp"
 #include "random.hpp"

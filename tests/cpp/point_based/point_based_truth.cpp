@@ -2,13 +2,10 @@
 // Usage: point_based_truth FIRST_SEED MODELS WORK. Each decision gets so much work (`OnlineSarsop::improve`).
 //
 // A line of JSON for every claim that does not hold, and one at the end.
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <exception>
-#include <vector>
 
 #include "point_based/online.hpp"
 #include "random_models.hpp"
@@ -134,7 +131,6 @@ class Trial {
                 problem_.model.horizon, problem_.model.states, claimed, lower, upper);
   }
 
-  // After an action and an observation by chance.
   Belief next_of(const Belief& belief) {
     const auto by_observation = reference_.successors(belief, generator_.below(problem_.model.actions));
     double chosen = generator_.uniform();

@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <random>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "point_based/flat_model.hpp"
 

@@ -5,11 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <map>
-#include <utility>
-#include <vector>
 
 #include "point_based/flat_model.hpp"
 

@@ -4,8 +4,6 @@
 //   scripted describe         the grounded actions
 //   scripted walk SEED STEPS  random actions
 #include <cstdio>
-#include <cstdlib>
-#include <string>
 
 #include "aos/model/model_support.hpp"
 #include "aos/model/support.hpp"

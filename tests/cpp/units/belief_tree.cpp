@@ -1,13 +1,6 @@
 // Responses that are too many to list: sensing_tables.hpp, belief_tree.hpp.
 #include "aos/planning/belief_tree/belief_tree.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/distributions.hpp"
 #include "aos/model/transition.hpp"

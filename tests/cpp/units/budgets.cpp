@@ -1,9 +1,6 @@
 // What a budget in simulations buys in each planner: budget.hpp. Work is counted here, and no clock is asked.
 #include "aos/planning/planners.hpp"
 
-#include <string>
-#include <vector>
-
 #include "check.hpp"
 #include "worlds.hpp"
 
@@ -33,7 +30,6 @@ struct Unlisted : TableModel {
   }
 };
 
-// The steps that a planner takes of a prepared search.
 double steps_of(aos::Planner<Unlisted>& planner, const aos::Belief<Unlisted>& belief) {
   const aos::BarredActions none;
   const aos::Question<Unlisted> question{belief, {.simulations = simulations}, horizon, none};

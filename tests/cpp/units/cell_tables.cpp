@@ -1,12 +1,6 @@
 // Functions of the state as sums of small tables: cell_tables.hpp.
 #include "aos/planning/values/cell_tables.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <utility>
-#include <vector>
-
 #include "aos/draws/random.hpp"
 #include "check.hpp"
 

@@ -1,9 +1,6 @@
 // Runs every test and prints for each, as a line of JSON, what it expected in vain. With arguments it is the exam.
 //
 // All is one translation unit: the headers are templates, which would be compiled for each file anew.
-#include <cstdio>
-#include <exception>
-#include <string>
 
 #include "answers.hpp"
 #include "aos/base/fault.hpp"

@@ -1,11 +1,6 @@
 // Draws and the walk over all of them: enumerator.hpp, normal.hpp, random.hpp.
 #include "aos/draws/enumerator.hpp"
 
-#include <cmath>
-#include <initializer_list>
-#include <string>
-#include <vector>
-
 #include "aos/draws/normal.hpp"
 #include "aos/model/support.hpp"
 #include "check.hpp"

@@ -1,9 +1,6 @@
 // Whose fault an exception is: faults.hpp.
 #include "aos/child/faults.hpp"
 
-#include <new>
-#include <stdexcept>
-
 #include "check.hpp"
 
 namespace faults_tests {

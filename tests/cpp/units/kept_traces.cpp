@@ -1,13 +1,6 @@
 // Traces in a file that outlives the process: kept_traces.hpp.
 #include "aos/belief/kept_traces.hpp"
 
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <cstddef>
-#include <utility>
-#include <vector>
-
 #include "aos/base/descriptor_file.hpp"
 #include "aos/belief/history.hpp"
 #include "check.hpp"

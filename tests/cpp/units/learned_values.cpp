@@ -1,9 +1,6 @@
 // Values of states that are learned from simulations: learned_values.hpp.
 #include "aos/planning/values/learned_values.hpp"
 
-#include <cmath>
-#include <cstdint>
-
 #include "check.hpp"
 #include "worlds.hpp"
 
@@ -14,7 +11,6 @@ using Belief = aos::Belief<TableModel>;
 
 constexpr int horizon = 60;
 
-// Values of a problem that are learned from its first belief.
 struct Learned {
   explicit Learned(const units::Problem& problem, int decisions = horizon, std::uint64_t seed = 1)
       : random{seed}, belief{taken(problem, random)}, is_usable{values.prepare(belief, decisions, random)} {}

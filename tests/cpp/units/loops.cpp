@@ -1,13 +1,6 @@
 // Loops that draw, as the enumerator walks them: enumerator.hpp, loop_chain.hpp and drawing_loop.hpp.
 #include "aos/model/drawing_loop.hpp"
 
-#include <cmath>
-#include <cstdint>
-#include <map>
-#include <tuple>
-#include <utility>
-#include <vector>
-
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "check.hpp"

@@ -1,7 +1,6 @@
 // Numbers told by the cells of a grid: number_reports.hpp, number_grid.hpp, number_cells.hpp, and search over them.
 #include "aos/planning/listed/number_cells.hpp"
 
-#include <cmath>
 #include <numeric>
 
 #include "check.hpp"
@@ -23,7 +22,6 @@ std::uint32_t normal(NumberReports& reports, double mean, double deviation, std:
   return reports.add(skill, response);
 }
 
-// The likelihoods of each report by itself.
 point_based::Rows<point_based::Likelihood> each(const NumberReports& reports) {
   point_based::Rows<point_based::Likelihood> rows;
   rows.first.push_back(0);

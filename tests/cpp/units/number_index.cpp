@@ -1,9 +1,6 @@
 // Numbers by hashes: number_index.hpp.
 #include "aos/base/number_index.hpp"
 
-#include <string>
-#include <vector>
-
 #include "aos/base/mixed.hpp"
 #include "check.hpp"
 

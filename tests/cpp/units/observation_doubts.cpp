@@ -1,8 +1,6 @@
 // What observations tell of the state, by the visits of a search tree: observation_doubts.hpp.
 #include "aos/planning/pomcp/observation_doubts.hpp"
 
-#include <cmath>
-
 #include "check.hpp"
 #include "worlds.hpp"
 

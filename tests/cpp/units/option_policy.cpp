@@ -1,9 +1,6 @@
 // What options decide in a world that is small enough for the exact value: option_policy.hpp, option_pairs.hpp.
 #include "aos/planning/options/option_policy.hpp"
 
-#include <algorithm>
-#include <vector>
-
 #include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "check.hpp"

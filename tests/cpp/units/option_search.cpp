@@ -3,10 +3,6 @@
 
 #include "aos/planning/options/best_end.hpp"
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-
 #include "check.hpp"
 #include "worlds.hpp"
 

@@ -1,13 +1,6 @@
 // Samples that are weighed by what was observed: guided_step.hpp, particle_filter.hpp.
 #include "aos/belief/particle_filter.hpp"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "aos/belief/guided_step.hpp"
 #include "aos/model/support.hpp"
 #include "check.hpp"

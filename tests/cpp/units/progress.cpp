@@ -1,11 +1,6 @@
 // How far long work is: progress.hpp.
 #include "aos/base/progress.hpp"
 
-#include <algorithm>
-#include <chrono>
-#include <string>
-#include <vector>
-
 #include "aos/planning/planners.hpp"
 #include "check.hpp"
 #include "worlds.hpp"

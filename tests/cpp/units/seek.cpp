@@ -1,8 +1,6 @@
 // What is somewhere is sought: seek_planner.hpp, seek_policy.hpp.
 #include "aos/planning/seek/seek_planner.hpp"
 
-#include <string>
-
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/pomcp/pomcp.hpp"
 #include "aos/planning/values/group_missions.hpp"

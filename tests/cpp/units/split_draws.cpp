@@ -1,9 +1,6 @@
 // Draws that split heavy paths and sample light ones: split_draws.hpp.
 #include "aos/draws/split_draws.hpp"
 
-#include <array>
-#include <cstddef>
-
 #include "aos/model/support.hpp"
 #include "check.hpp"
 

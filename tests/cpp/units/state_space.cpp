@@ -1,8 +1,6 @@
 // The model as numbers and what is worked out from it: state_space.hpp, step_table.hpp, exact.hpp.
 #include "aos/planning/listed/state_space.hpp"
 
-#include <map>
-
 #include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/listed/step_table.hpp"
 #include "check.hpp"

@@ -1,8 +1,6 @@
 // Numbers for states and the values of many of them: state_numbers.hpp, wide_values.hpp.
 #include "aos/planning/values/wide_values.hpp"
 
-#include <cmath>
-
 #include "aos/planning/listed/state_numbers.hpp"
 #include "aos/planning/values/mdp_values.hpp"
 #include "check.hpp"

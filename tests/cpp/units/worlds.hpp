@@ -1,9 +1,6 @@
 // Small worlds for the tests, as the exam's tables.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "problem.hpp"
 #include "table_model.hpp"
 

@@ -2,12 +2,7 @@
 // line of JSON. See tests/exam/__main__.py for how it is called.
 #pragma once
 
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <iostream>
-#include <map>
-#include <string>
 
 #include "aos/model/support.hpp"
 #include "claims.hpp"

@@ -2,15 +2,6 @@
 // another action becomes the better one.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "aos/belief/belief.hpp"
 #include "aos/child/jeffreys_rule.hpp"
 #include "flat.hpp"

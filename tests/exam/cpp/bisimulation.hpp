@@ -1,13 +1,6 @@
 // How many states there are at least once those are taken together that no experiment can tell apart.
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <utility>
-#include <vector>
-
 #include "flat.hpp"
 
 namespace exam {

@@ -1,16 +1,7 @@
 // What the engine claims of a model, held against the truth: beliefs, exact values, states that matter, bounds.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <map>
-#include <memory>
 #include <regex>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "aos/belief/belief.hpp"
 #include "aos/planning/listed/exact_root.hpp"

@@ -1,12 +1,6 @@
 // Values and margins that searches tell with their standard errors, and where they change, held against the truth.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "aos/belief/belief.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/text/json.hpp"

@@ -8,18 +8,6 @@
 // and the step only.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <iterator>
-#include <numeric>
-#include <optional>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "aos/base/clock.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"

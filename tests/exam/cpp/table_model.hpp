@@ -2,16 +2,6 @@
 // of models run through the engine's own headers without being compiled.
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <span>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "aos/base/fault.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/observed_numbers.hpp"

@@ -5,15 +5,9 @@
 // 2000) and beliefs where a better one was found, joined by the sawtooth. Both hold at every moment, for all beliefs.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <ctime>
 #include <functional>
 #include <limits>
-#include <map>
-#include <utility>
-#include <vector>
 
 #include "flat.hpp"
 

@@ -1,10 +1,5 @@
 #include "numbers/compact_model.hpp"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
-
 #include "aos/base/add_up.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/draws/enumerator.hpp"

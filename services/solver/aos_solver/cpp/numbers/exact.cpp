@@ -1,8 +1,5 @@
 #include "numbers/exact.hpp"
 
-#include <algorithm>
-#include <limits>
-
 #include "aos/base/progress.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/draws/enumerator.hpp"

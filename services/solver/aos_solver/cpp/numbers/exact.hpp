@@ -7,14 +7,9 @@
 // sooner is better: otherwise a free exit could be put off for ever.
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "aos/draws/random.hpp"
 #include "numbers/belief_key.hpp"

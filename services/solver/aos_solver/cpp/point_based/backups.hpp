@@ -1,14 +1,6 @@
 // Backups: both bounds of a belief, from the bounds of its successors.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <utility>
-#include <vector>
-
 #include "point_based/belief_graph.hpp"
 
 namespace aos::point_based {
@@ -120,7 +112,6 @@ class Backups {
     graph_.refresh_lower(node);
   }
 
-  // The length of the longest of the successors' best plans.
   std::uint32_t longest_plan(const Branch& branch) {
     std::uint32_t longest = graph_.is_endless() ? 0 : 1;
     for (const Successor& successor : branch.successors) {

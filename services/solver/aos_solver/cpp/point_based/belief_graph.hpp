@@ -4,16 +4,9 @@
 // any action at its end. So an alpha vector serves all beliefs with as many decisions left, or more.
 #pragma once
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <deque>
-#include <limits>
 #include <memory>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
@@ -130,7 +123,6 @@ class BeliefGraph {
     }
   }
 
-  // Finds the successors of a branch.
   void open(const Node& node, Branch& branch) {
     if (branch.is_open) return;
     branch.is_open = true;

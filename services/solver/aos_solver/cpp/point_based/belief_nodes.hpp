@@ -1,11 +1,6 @@
 // The nodes of a belief graph: the beliefs that were reached, their actions, and the successors of these.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <limits>
-#include <vector>
-
 #include "point_based/bounds.hpp"
 
 namespace aos::point_based {

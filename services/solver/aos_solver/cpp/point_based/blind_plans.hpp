@@ -2,14 +2,6 @@
 // add at the end of another plan.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <utility>
-#include <vector>
-
 #include "point_based/bounds.hpp"
 #include "point_based/initial_bounds.hpp"
 #include "point_based/regions.hpp"

@@ -1,11 +1,7 @@
 // The lower and the upper bound of the value function over the beliefs of a region.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
 #include <deque>
-#include <utility>
-#include <vector>
 
 #include "aos/base/statistics.hpp"
 #include "point_based/regions.hpp"

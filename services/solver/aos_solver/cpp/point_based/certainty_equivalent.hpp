@@ -6,13 +6,7 @@
 // there. They serve missions without end only.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <map>
-#include <utility>
-#include <vector>
 
 #include "aos/base/statistics.hpp"
 #include "point_based/bounds.hpp"

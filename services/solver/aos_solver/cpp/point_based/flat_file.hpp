@@ -8,13 +8,10 @@
 //   f64 start_weight[starts]; u64 first_entry[starts + 1]; {u32 state, u32 unused, f64 probability}[start entries].
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "aos/base/descriptor_file.hpp"
 #include "point_based/flat_model.hpp"

@@ -3,13 +3,8 @@
 // Without a horizon they have one layer; with a horizon, one for each number of decisions that are left.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
 #include "aos/base/progress.hpp"
 #include "point_based/regions.hpp"

@@ -4,13 +4,9 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
 #include "aos/base/function_ref.hpp"
 #include "point_based/flat_model.hpp"

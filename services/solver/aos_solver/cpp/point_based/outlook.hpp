@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cmath>
-#include <vector>
 
 #include "point_based/flat_model.hpp"
 #include "point_based/rounding.hpp"

@@ -7,16 +7,8 @@
 // bound is below the belief's lower bound are dropped, and so are alpha vectors that are best at no remaining belief.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <deque>
-#include <limits>
-#include <optional>
 #include <string>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 #include "aos/base/switches.hpp"
 #include "point_based/backups.hpp"
@@ -53,7 +45,6 @@ class Sarsop {
     return count;
   }
 
-  // Forgets what trials have found out.
   void start_over() {
     forget_roots();
     graph_.start_over();
@@ -243,7 +234,6 @@ class Sarsop {
     return branch;
   }
 
-  // The node of a belief with the whole horizon to go.
   std::uint32_t anew_of(std::uint32_t number) {
     const Belief belief = graph_[number].belief;
     return graph_.node_of(graph_[number].region, static_cast<std::uint32_t>(model_.horizon), belief);

@@ -1,12 +1,6 @@
 // Trials: paths from a belief into the graph, along which actions are opened.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
 #include "aos/base/switches.hpp"
 #include "point_based/backups.hpp"
 #include "point_based/belief_graph.hpp"
@@ -23,7 +17,6 @@ class Trial {
 
   // The nodes of the last trial, from its start on.
   const std::vector<std::uint32_t>& path() const { return path_; }
-  // How many sampled trials began with each action.
   const std::vector<std::uint32_t>& begun() const { return begun_; }
   void set_begun(std::vector<std::uint32_t> begun) { begun_ = std::move(begun); }
   void forget_begun() { begun_.assign(model_.actions, 0); }

@@ -2,10 +2,6 @@
 // is as alpha_vectors.py describes.
 #pragma once
 
-#include <cstdint>
-#include <stdexcept>
-#include <vector>
-
 #include "aos/base/descriptor_file.hpp"
 #include "aos/text/json.hpp"
 #include "point_based/bounds.hpp"

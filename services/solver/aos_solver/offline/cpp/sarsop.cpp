@@ -3,12 +3,8 @@
 // The solver ends when the bounds are as near as asked for, when its time or memory is used up, when trials find
 // nothing more, or when anything comes on standard input or that is closed. It then writes the best vectors so far.
 #include <poll.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 
 #include "aos/base/clock.hpp"

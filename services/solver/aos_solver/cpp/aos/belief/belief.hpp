@@ -6,14 +6,6 @@
 // the exact one. If steps cannot be enumerated, the belief is drawn from then on: see drawn_step.hpp.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <unordered_map>
-#include <utility>
-#include <vector>
-
 #include "aos/base/statistics.hpp"
 #include "aos/belief/drawn_step.hpp"
 #include "aos/belief/effort.hpp"
@@ -55,7 +47,6 @@ class Belief {
   const std::vector<Particle>& particles() const { return cloud_.particles; }
   // Whether it is the exact belief, but for differences that nobody would notice.
   bool is_exact() const { return error_bound_ <= negligible_error; }
-  // Whether the states were drawn at random.
   bool is_drawn() const { return source_ == Source::drawing; }
   // Whether more than half of the states were drawn only once, so that there are others. A belief without lineages does not
   // know; then it is enough that there are so many states.

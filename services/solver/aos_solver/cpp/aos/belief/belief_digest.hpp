@@ -4,11 +4,6 @@
 // constants of the model do not count.
 #pragma once
 
-#include <array>
-#include <bit>
-#include <cstdint>
-#include <string>
-
 #include "aos/base/mixed.hpp"
 #include "aos/belief/belief.hpp"
 

@@ -2,9 +2,6 @@
 // states agree with an observation, or a draw is continuous, the particle filter takes over, whose particles can be moved.
 #pragma once
 
-#include <cstddef>
-#include <utility>
-
 #include "aos/belief/effort.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/particle_filter.hpp"

@@ -6,9 +6,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
 
 #include "aos/draws/random.hpp"
 

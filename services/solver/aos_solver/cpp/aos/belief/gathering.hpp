@@ -1,11 +1,6 @@
 // Distinct states with weights, collected one by one.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "aos/base/function_ref.hpp"
 #include "aos/base/number_index.hpp"
 #include "aos/draws/random.hpp"
@@ -108,7 +103,6 @@ class Gathering {
  public:
   using State = typename Model::State;
 
-  // Returns the number of the state's particle.
   std::size_t add(const State& state, double weight) {
     const auto is_it = [&](std::uint32_t number) { return particles_[number].state == state; };
     const std::size_t number = numbers_.find_or_add(Model::hash(state), static_cast<std::uint32_t>(particles_.size()), is_it);

@@ -21,13 +21,6 @@
 // results. The trial in each stratum is at another point, at random, and so without bias, too.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "aos/base/function_ref.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
@@ -67,7 +60,6 @@ class GuidedStep {
     keeps_ends_ = numbers == nullptr || !numbers->weighs();
   }
 
-  // Leaves the first draws of each step to chance.
   void leave_to_chance(std::size_t draws) { by_chance_ = draws; }
 
   // Whether the last call left nothing to chance, apart from what has no promise.

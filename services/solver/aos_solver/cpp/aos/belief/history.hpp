@@ -4,13 +4,7 @@
 // share blocks. A block that was drawn freely is known by the seed of its draws.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include "aos/base/add_up.hpp"
 #include "aos/belief/gathering.hpp"

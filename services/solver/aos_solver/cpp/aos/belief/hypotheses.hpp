@@ -9,17 +9,7 @@
 // observed end for it: the remedy of the belief does not touch it.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <optional>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "aos/base/mixed.hpp"
 #include "aos/belief/belief.hpp"
@@ -42,7 +32,6 @@ class Hypotheses {
 
   explicit Hypotheses(Belief<Model> belief) { all_.push_back({1, {}, std::move(belief)}); }
 
-  // The mixture of all hypotheses.
   const Belief<Model>& belief() const { return mixture_ ? *mixture_ : all_.front().belief; }
   // The belief in which nothing ran that was not observed; null where that is the belief itself.
   const Belief<Model>* cautious() const { return cautious_ ? &*cautious_ : nullptr; }
@@ -253,7 +242,6 @@ class Hypotheses {
     return after;
   }
 
-  // After what changes each belief and tells nothing.
   Hypotheses changed(auto&& change) const {
     Hypotheses after = *this;
     for (Hypothesis& each : after.all_) each.belief = change(each.belief);

@@ -2,12 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "aos/draws/loop_heads.hpp"
 #include "aos/draws/random.hpp"

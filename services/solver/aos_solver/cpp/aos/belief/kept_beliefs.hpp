@@ -3,13 +3,6 @@
 // a process ends during a change, the state before the change is whole.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <utility>
-#include <vector>
-
 #include "aos/base/descriptor_file.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"

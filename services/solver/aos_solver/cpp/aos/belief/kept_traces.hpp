@@ -5,12 +5,7 @@
 // are written to the other one of two areas, so that those of the change before are whole until this one is.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <utility>
-#include <vector>
 
 #include "aos/base/descriptor_file.hpp"
 #include "aos/belief/history.hpp"

@@ -2,17 +2,7 @@
 // quantiles of numbers with many values.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <string>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
@@ -104,7 +94,6 @@ class Marginals {
     std::vector<Leaf> all;
   };
 
-  // The bits in which any state differs from the first one.
   std::vector<std::byte> differing_bits() const {
     std::vector<std::byte> differences(Model::state_bytes());
     const std::byte* const first = Model::bytes_of(particles_.front().state);

@@ -13,15 +13,6 @@
 // The states that a copy has passed are kept (passage.hpp). The limits of `moved` count the steps of a proposal that repeats all.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "aos/belief/free_draws.hpp"
 #include "aos/belief/guided_step.hpp"
 #include "aos/belief/history.hpp"
@@ -214,7 +205,6 @@ class Moves {
     return ratio >= 1 || random_.flag(ratio);
   }
 
-  // The state after a block.
   const State& passed(Passage<Model>& passage, std::size_t place) {
     while (passage.passed() <= place) pass(passage, passage.passed());
     return passage.state(place);

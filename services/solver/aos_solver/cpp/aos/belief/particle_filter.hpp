@@ -7,13 +7,6 @@
 // or if they descend from too few origins.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
 #include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/guided_step.hpp"

@@ -1,12 +1,6 @@
 // The blocks of a trace with the states after them, as far as these are known.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "aos/belief/history.hpp"
 
 namespace aos {
@@ -57,7 +51,6 @@ class Passage {
     if (!states_.empty()) __builtin_prefetch(states_.data());
   }
 
-  // After how many blocks the state is known.
   std::size_t passed() const { return states_.size(); }
   const State& state(std::size_t place) const { return states_[place]; }
   bool is_repeated(std::size_t place) const { return places_[place].is_repeated; }

@@ -1,13 +1,6 @@
 // What a report makes of several beliefs.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 

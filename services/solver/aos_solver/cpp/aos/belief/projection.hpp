@@ -2,16 +2,6 @@
 // others are as the initial belief has them.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <unordered_map>
-#include <utility>
-#include <vector>
-
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"

@@ -1,9 +1,6 @@
 // The probability that a step violates the mission's constraints.
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"

@@ -4,15 +4,6 @@
 // not, because the documents have changed, the belief is taken over alone, and a new history begins with it.
 #pragma once
 
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/draws/observed_numbers.hpp"

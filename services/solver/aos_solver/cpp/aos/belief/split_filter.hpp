@@ -4,9 +4,6 @@
 // of draws and paths, so that the same seed gives the same belief.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-
 #include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"

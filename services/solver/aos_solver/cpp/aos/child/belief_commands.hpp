@@ -1,15 +1,6 @@
 // The commands that ask an engine child about its belief or change the belief.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <exception>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "aos/base/fault.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/effort.hpp"

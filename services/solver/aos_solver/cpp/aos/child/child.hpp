@@ -6,14 +6,6 @@
 #pragma once
 
 #include <poll.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <memory>
-#include <string_view>
 
 #include "aos/base/progress.hpp"
 #include "aos/child/command.hpp"

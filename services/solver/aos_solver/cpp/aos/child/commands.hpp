@@ -1,13 +1,6 @@
 // The commands of an engine child. Every answer is a JSON object.
 #pragma once
 
-#include <chrono>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <type_traits>
-#include <utility>
-
 #include "aos/base/progress.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"

@@ -1,10 +1,8 @@
 // Faults as answers of an engine child. A fault is the documents' if it shows while their code runs, else the engine's.
 #pragma once
 
-#include <cstdint>
 #include <exception>
 #include <new>
-#include <string>
 
 #include "aos/base/fault.hpp"
 #include "aos/child/command.hpp"

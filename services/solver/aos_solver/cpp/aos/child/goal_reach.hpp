@@ -1,10 +1,6 @@
 // Whether the actions can lead from a belief to a goal.
 #pragma once
 
-#include <chrono>
-#include <cstddef>
-#include <vector>
-
 #include "aos/base/clock.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"

@@ -2,12 +2,6 @@
 // values of one initial state, so that states which differ in nothing else are equal.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstring>
-#include <string>
-#include <vector>
-
 #include "aos/draws/random.hpp"
 #include "aos/model/values.hpp"
 #include "aos/text/json.hpp"

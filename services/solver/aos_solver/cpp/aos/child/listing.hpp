@@ -2,11 +2,6 @@
 // every state that can be reached.
 #pragma once
 
-#include <cstddef>
-#include <limits>
-#include <stdexcept>
-#include <utility>
-
 #include "aos/base/descriptor_file.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/child/left_out.hpp"

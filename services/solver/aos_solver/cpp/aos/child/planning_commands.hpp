@@ -1,18 +1,6 @@
 // The commands that let an engine child decide and look ahead: searches, reachable states.
 #pragma once
 
-#include <algorithm>
-#include <chrono>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <numeric>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "aos/base/clock.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"

@@ -1,14 +1,6 @@
 // The commands by which a belief goes over to an engine of other variables.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <unordered_map>
-#include <utility>
-#include <vector>
-
 #include "aos/belief/belief.hpp"
 #include "aos/belief/projection.hpp"
 #include "aos/child/command.hpp"

@@ -2,10 +2,6 @@
 // states on. An episode ends with its state or at the horizon, and a new one begins.
 #pragma once
 
-#include <algorithm>
-#include <chrono>
-#include <cstdint>
-
 #include "aos/base/clock.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/child/command.hpp"

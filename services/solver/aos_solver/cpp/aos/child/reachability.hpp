@@ -1,10 +1,6 @@
 // Which states the actions can reach: every outcome of every action, breadth first, whatever its probability.
 #pragma once
 
-#include <chrono>
-#include <cstddef>
-#include <vector>
-
 #include "aos/base/clock.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"

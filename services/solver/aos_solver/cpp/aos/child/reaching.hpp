@@ -14,8 +14,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstddef>
-#include <cstdint>
 #include <string_view>
 
 #include "aos/model/blame.hpp"

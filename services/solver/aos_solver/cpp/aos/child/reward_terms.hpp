@@ -1,10 +1,7 @@
 // The value of an action by the statements of documents that give its rewards.
 #pragma once
 
-#include <cstdint>
 #include <map>
-#include <string>
-#include <utility>
 
 #include "aos/base/reward_ledger.hpp"
 #include "aos/base/set_for_now.hpp"

@@ -1,10 +1,6 @@
 // The command that asks an engine child about the mission's constraints.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-
 #include "aos/belief/belief.hpp"
 #include "aos/belief/risks.hpp"
 #include "aos/child/command.hpp"

@@ -1,12 +1,6 @@
 // The commands of a study: exact values and their terms at one supposed belief after the other.
 #pragma once
 
-#include <algorithm>
-#include <chrono>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/child/belief_commands.hpp"

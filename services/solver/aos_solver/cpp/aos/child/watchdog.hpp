@@ -9,8 +9,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 
 #include "aos/model/blame.hpp"
 

@@ -1,12 +1,6 @@
 // Translates the model's numbers into the words of the documents, and back.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "aos/child/command.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/model/step.hpp"

@@ -1,10 +1,6 @@
 // The commands for simulated worlds: one world for missions without a robot, many worlds for a learner.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <vector>
-
 #include "aos/belief/risks.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/wording.hpp"
@@ -54,7 +50,6 @@ class WorldCommands {
     json.end_object();
   }
 
-  // Writes the hidden state as text for people.
   void show(JsonWriter& json) const { json.begin_object().member("state", Model::state_text(hidden_)).end_object(); }
 
   void reset_many(JsonWriter& json, const Command& command) {

@@ -3,12 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <numbers>
-#include <vector>
 
 #include "aos/draws/normal.hpp"
 #include "aos/draws/random.hpp"

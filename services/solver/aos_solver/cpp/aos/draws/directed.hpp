@@ -1,10 +1,6 @@
 // A source of draws whose subclass decides each outcome. `Enumerator` walks all outcomes; `Replay` repeats given ones.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <utility>
-
 #include "aos/draws/loop_heads.hpp"
 #include "aos/draws/random.hpp"
 
@@ -48,7 +44,6 @@ class DirectedDraws : public Draws<DirectedDraws> {
     if (sink_ == nullptr) return ignore_number();
     sink_->take(key, distribution);
   }
-  // Sets the sink of reported numbers and returns the one before.
   NumberSink* report_to(NumberSink* sink) { return std::exchange(sink_, sink); }
 
  protected:

@@ -1,12 +1,7 @@
 // The functions of the distributions that numbers are reported from. Only support.hpp includes this file.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <span>
-#include <utility>
 
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/distributions.hpp"

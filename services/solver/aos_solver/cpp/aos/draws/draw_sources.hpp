@@ -2,12 +2,6 @@
 // includes this file.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <type_traits>
-
 #include "aos/draws/directed.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/loop_elimination.hpp"

@@ -1,12 +1,7 @@
 // Runs model code once for each combination of its discrete draws, with the combination's probability.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "aos/base/function_ref.hpp"
 #include "aos/draws/directed.hpp"
@@ -123,7 +118,6 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   using End = FunctionRef<void()>;
 
   double walk(Run run, Run visit, int max_paths, std::size_t max_depth_first);
-  // Walks the paths that were cut before.
   double walk_without_cuts(Run run, Run visit, int max_paths, std::size_t max_depth_first);
   // Lists what follows each head. Returns the probability of what is not listed.
   double list_heads(Run run, std::size_t max_depth_first);

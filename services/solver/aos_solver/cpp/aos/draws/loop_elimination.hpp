@@ -4,13 +4,7 @@
 // is as accurate as the probabilities are, however rarely a loop ends.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <functional>
-#include <queue>
-#include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "aos/base/add_up.hpp"
 #include "aos/draws/enumerator.hpp"

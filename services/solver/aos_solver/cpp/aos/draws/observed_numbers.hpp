@@ -5,12 +5,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/random.hpp"
@@ -59,7 +53,6 @@ class ObservedNumbers {
 
 [[noreturn, gnu::cold]] void reported_twice(NumberKey key);
 
-// Draws the numbers that a step reports.
 class RecordedNumbers final : public NumberSink {
  public:
   explicit RecordedNumbers(Sampler& random) : random_(random) {}

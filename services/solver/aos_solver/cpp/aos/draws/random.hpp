@@ -2,13 +2,10 @@
 // `DirectedDraws` (directed.hpp) decide what a draw gives, and `AnySource` stands for either.
 #pragma once
 
-#include <array>
 #include <concepts>
-#include <cstdint>
 #include <initializer_list>
 #include <iterator>
 #include <stdexcept>
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -87,11 +84,9 @@ class Draws {
     return name + 1 + normalised(copied.weights, copied.count);
   }
 
-  // Draws a value of an enum whose values count from 0.
   template <class Enum, class Weights = std::initializer_list<double>>
     requires std::is_enum_v<Enum>
   Enum SampleDiscrete(const Weights& weights) { return static_cast<Enum>(SampleDiscrete(-1, weights)); }
-  // Draws one of several values.
   template <class Value, class Weights = std::initializer_list<double>>
   Value SampleOf(std::initializer_list<Value> values, const Weights& weights) {
     return values.begin()[SampleDiscrete(-1, weights)];
@@ -200,7 +195,6 @@ inline int place_in(const double* weights, int count, double place) {
   return last;
 }
 
-// Draws at random.
 class Sampler : public Draws<Sampler>, public Xoshiro {
  public:
   using Xoshiro::Xoshiro;
@@ -217,7 +211,6 @@ class Sampler : public Draws<Sampler>, public Xoshiro {
   void report(std::uint32_t key, const Distribution& distribution) {
     if (sink_ != nullptr) sink_->take(key, distribution);
   }
-  // Sets the sink of reported numbers and returns the one before.
   NumberSink* report_to(NumberSink* sink) { return std::exchange(sink_, sink); }
 
   int choose(const double* weights, int count, double total) { return place_in(weights, count, uniform() * total); }

@@ -2,9 +2,6 @@
 // numbers are given, and the later ones are random.
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "aos/draws/directed.hpp"
 #include "aos/draws/loop_heads.hpp"
 #include "aos/draws/random.hpp"

@@ -9,9 +9,6 @@
 // light path before, so that it does not depend on what is drawn now.
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "aos/draws/directed.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/random.hpp"
@@ -77,7 +74,6 @@ class SplitDraws final : public DirectedDraws {
   static constexpr int none = -1;
   static constexpr long max_light_branches = 6;
 
-  // What holds of a path up to a draw.
   struct Way {
     double weight;
     long branches;  // of a light path
@@ -96,7 +92,6 @@ class SplitDraws final : public DirectedDraws {
     at_ = {start_weight_, 1, true};
     begin_numbers();
   }
-  // The last draws are as many as have few combinations.
   void learn_last_draws() {
     long combinations = 1;
     next_last_draws_ = choices_.size();

@@ -1,8 +1,6 @@
 // Builds of a model: a thorough one compiles longer for faster code, a quick one (AOS_QUICK) does not.
 #pragma once
 
-#include <type_traits>
-
 #include "aos/draws/random.hpp"
 
 // An attribute of functions: in a thorough build, everything that the function calls is inlined into it.

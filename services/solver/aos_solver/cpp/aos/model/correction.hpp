@@ -2,11 +2,6 @@
 // code reads the local variables of the abstraction mapping. A search never corrects the states that it simulates.
 #pragma once
 
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "aos/base/fault.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/containers.hpp"

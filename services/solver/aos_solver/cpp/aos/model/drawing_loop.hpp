@@ -5,15 +5,6 @@
 // value by value: all local variables that the text sees there, the results of the section, and the copies of the state.
 #pragma once
 
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <iterator>
-#include <string>
-#include <tuple>
-#include <type_traits>
-#include <utility>
-
 #include "aos/draws/loop_heads.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"

@@ -6,11 +6,8 @@
 // has taken `long_loop` rounds, and an enumerator then says whether a step from that state may have no end.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <map>
 #include <mutex>
-#include <string>
 #include <unordered_set>
 
 #include "aos/base/mixed.hpp"

@@ -1,16 +1,7 @@
 // The compiled model in the form that the engine's templates expect. It calls the functions of the model table.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "aos/base/set_for_now.hpp"
 #include "aos/model/model_table.hpp"
@@ -45,9 +36,7 @@ struct ErasedModel {
   static int response_count(int skill) { return compiled_model.skills[skill].response_count; }
   static const char* response_name(int skill, int response) { return compiled_model.skills[skill].responses[response]; }
   static bool has_text_response(int skill) { return compiled_model.skills[skill].has_text_response; }
-  // Whether all grounded actions of the skill lead to the same states with the same rewards.
   static bool has_alike_groundings(int skill) { return compiled_model.skills[skill].has_alike_groundings; }
-  // Whether the reward follows from the state and the grounded action.
   static bool has_certain_rewards(int skill) { return compiled_model.skills[skill].has_certain_rewards; }
   // How many numbers and arrays of numbers a step of the skill may report besides its response.
   static int number_count(int skill) { return compiled_model.skills[skill].number_count; }

@@ -1,18 +1,6 @@
 // A compiled model, made of what an emitted file says of its project. Everything that is the same for all projects is here.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <type_traits>
-#include <utility>
-#include <vector>
-
 #include "aos/base/fault.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/model/blame.hpp"

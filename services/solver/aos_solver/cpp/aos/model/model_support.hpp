@@ -1,15 +1,6 @@
 // What an emitted model needs. System headers are left out, since their macros could be names in a document.
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <vector>
-
 #include "aos/base/fault.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/containers.hpp"

@@ -2,15 +2,6 @@
 // once for all models with states of about the same size, and a model is compiled without the engine.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <type_traits>
-#include <vector>
-
 #include "aos/draws/directed.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"

@@ -1,13 +1,6 @@
 // Arrays whose elements are the values of an enum: `state.at[Soda]`.
 #pragma once
 
-#include <algorithm>
-#include <concepts>
-#include <cstddef>
-#include <initializer_list>
-#include <type_traits>
-#include <vector>
-
 #include "aos/model/containers.hpp"
 
 namespace aos {

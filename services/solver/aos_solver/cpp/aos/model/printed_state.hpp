@@ -3,8 +3,6 @@
 
 #include <ostream>
 #include <sstream>
-#include <string>
-#include <type_traits>
 
 #include "aos/model/reflection.hpp"
 

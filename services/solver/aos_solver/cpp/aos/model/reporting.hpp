@@ -1,8 +1,6 @@
 // `__observed` of model code. The source of draws reports each number to which a distribution is assigned.
 #pragma once
 
-#include <cstddef>
-
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/observed_numbers.hpp"
 

@@ -1,10 +1,6 @@
 // Rollouts: the value of a state under the documents' rollout policy, or else under random actions, by simulation.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <utility>
-
 #include "aos/base/switches.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/build_kind.hpp"

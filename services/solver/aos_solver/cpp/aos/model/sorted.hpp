@@ -1,13 +1,6 @@
 // Pairs, sets and maps of fixed storage, with the part of the standard ones' interface that documents use.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <initializer_list>
-#include <iterator>
-#include <type_traits>
-#include <utility>
-
 #include "aos/model/containers.hpp"
 
 namespace aos {

@@ -1,15 +1,7 @@
 // Writes a state as one line of text and reads it back, for beliefs that outlive their process.
 #pragma once
 
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "aos/model/reflection.hpp"
 

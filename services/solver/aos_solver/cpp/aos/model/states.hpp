@@ -1,13 +1,7 @@
 // States as the engine holds them: blocks of bytes that only the compiled model can read.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <new>
-#include <type_traits>
-#include <utility>
 
 #include "aos/model/model_table.hpp"
 

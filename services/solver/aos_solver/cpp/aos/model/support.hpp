@@ -2,16 +2,7 @@
 // program includes this file; in an executable it is the engine's.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <initializer_list>
 #include <sstream>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-#include <unordered_map>
-#include <vector>
 
 #include "aos/base/fault.hpp"
 #include "aos/base/reward_ledger.hpp"

@@ -1,14 +1,7 @@
 // What tracing adds to document code: see trace.py. A model that plans has none of it.
 #pragma once
 
-#include <cstdint>
 #include <exception>
-#include <initializer_list>
-#include <string>
-#include <string_view>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "aos/base/fault.hpp"
 #include "aos/base/reward_ledger.hpp"

@@ -1,14 +1,6 @@
 // One simulated step in the phases of the documents: which phase reads and changes which copy of the state.
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <type_traits>
-
 #include "aos/base/fault.hpp"
 #include "aos/base/reward_ledger.hpp"
 #include "aos/model/blame.hpp"
@@ -88,7 +80,6 @@ struct EndingSteps {
   }
 };
 
-// The defaults for what an environment document leaves out.
 struct EnvironmentDefaults {
   using Steps = EndingSteps;
   static constexpr bool is_one_state = false;
@@ -182,7 +173,6 @@ Observation observation_of(const auto& effect) {
 template <class State, bool is_kept>
 using Kept = std::conditional_t<is_kept, const State, State&>;
 
-// The phases of a step after the extrinsic changes.
 template <class Environment, class Skill>
 Step run_skill(auto& state, auto& state_, auto& next, bool meets_precondition, int execution_time,
                double extrinsic_reward, const auto& parameters, auto& random) {

@@ -1,18 +1,6 @@
 // Values as text, as JSON, and as the numbers of a saved state. Only support.hpp includes this file.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <charconv>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "aos/base/fault.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/state_text.hpp"

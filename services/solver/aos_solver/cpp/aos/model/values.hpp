@@ -1,16 +1,8 @@
 // Values as lists of their leaves: the name, the number and the address of each.
 #pragma once
 
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
 #include <functional>
-#include <string>
-#include <string_view>
-#include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "aos/model/reflection.hpp"
 

@@ -1,9 +1,6 @@
 // Actions after which everything is as before, so that the next decision is the same one again.
 #pragma once
 
-#include <cstddef>
-#include <optional>
-
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/model/step.hpp"

@@ -3,11 +3,6 @@
 // A planner gets ready for a decision, or says why it cannot make it. Then it searches, and its estimates decide.
 #pragma once
 
-#include <chrono>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "aos/base/clock.hpp"
 #include "aos/base/function_ref.hpp"
 #include "aos/belief/belief.hpp"
@@ -94,7 +89,6 @@ class Planner {
 
   // Searches below an action that is being carried out, until `is_over()`, which is called every millisecond or so.
   virtual void ponder(int /*action*/, const Question<Model>& /*question*/, Sampler& /*random*/, FunctionRef<bool()> /*is_over*/) {}
-  // Keeps what serves the decision after an action and an observation.
   virtual void advance(int /*action*/, Observation /*observation*/) {}
   // Drops what holds for the last belief only.
   virtual void forget() {}

@@ -1,18 +1,6 @@
 // The planners of a model, and which of them decides: the one that was asked for, or the first that can.
 #pragma once
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <iterator>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "aos/base/clock.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"

@@ -1,9 +1,7 @@
 // What a step by the documents' code costs beside a step by a list of outcomes, counted and not timed.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
-#include <cstdint>
 
 #include "aos/draws/directed.hpp"
 #include "aos/draws/observed_numbers.hpp"

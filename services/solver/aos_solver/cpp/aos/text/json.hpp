@@ -1,13 +1,10 @@
 // A writer of JSON that keeps no document tree in memory.
 #pragma once
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <string>
-#include <string_view>
 
 #include "aos/text/utf8.hpp"
 

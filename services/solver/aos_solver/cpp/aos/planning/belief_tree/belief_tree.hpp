@@ -7,16 +7,6 @@
 // of a belief that has a share of another one in it, at least this share of what that one loses is lost.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "aos/base/clock.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/switches.hpp"
@@ -298,7 +288,6 @@ class BeliefTree final : public TreePlanner<Model> {
     return std::min(node.value, node.seen - node.share * std::max(like.seen - like.value, 0.0));
   }
 
-  // The best action with enough visits.
   const ActionNode& best_action(std::uint32_t node) {
     std::uint32_t most = 0;
     for (const ActionNode& action : actions_of(node)) most = std::max(most, action.n);

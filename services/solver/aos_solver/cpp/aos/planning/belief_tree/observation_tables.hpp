@@ -5,15 +5,8 @@
 // is the product over its pieces. Numbers have the density of their distributions.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <map>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "aos/base/mixed.hpp"
 #include "aos/draws/described_distribution.hpp"
@@ -29,7 +22,6 @@ struct NumberedReport {
   std::vector<std::uint32_t> distributions;  // of the numbers
 };
 
-// An observation that was drawn from a table.
 struct TabledObservation {
   static constexpr std::uint32_t nothing = 0xffffffffu;
 

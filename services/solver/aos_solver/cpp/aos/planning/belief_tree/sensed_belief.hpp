@@ -1,14 +1,6 @@
 // A small belief of listed states, and what it becomes after an action and an observation that is drawn.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <utility>
-#include <vector>
-
 #include "aos/draws/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 #include "aos/planning/belief_tree/sensing_tables.hpp"
@@ -61,7 +53,6 @@ class SensedBelief {
   }
   void keep(Sampler& random) { thin_out(after_, tree_states, random); }
 
-  // The states that the last draw began with.
   const SmallBelief& before() const { return start_; }
   const SmallBelief& after() const { return after_; }
   // The largest share of the belief after the draw, before `keep`, that is a belief of these states.

@@ -2,16 +2,6 @@
 // that shape only what is observed come from strata, and the pieces of a text response are noted between them.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <unordered_map>
-#include <utility>
-#include <vector>
-
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/directed.hpp"
 #include "aos/draws/distributions.hpp"
@@ -54,7 +44,6 @@ class SensedPath final : public DirectedDraws, private NumberSink {
 
   SensedPath() { report_to(this); }
 
-  // Follows the enumerator and notes the outcomes of its draws.
   void follow(Enumerator& path, std::vector<int>& taken) {
     start(0);
     path_ = &path;

@@ -1,13 +1,6 @@
 // What model code reports on its way from a state to a next state, run by run, with other draws of the sensors.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/model/blame.hpp"
@@ -26,7 +19,6 @@ class SensingRuns {
 
   explicit SensingRuns(const StateSpace<Model>& space) : space_(space) {}
 
-  // Walks the draws of an action that shape the next state.
   void list(std::uint32_t number, int action) {
     const ForgottenTexts forgotten;
     number_ = number;
@@ -78,7 +70,6 @@ class SensingRuns {
     return source_.report(step.observation, text_);
   }
 
-  // Whether a draw of a sensor changes several pieces of a text in one of some runs.
   bool has_joint_pieces() {
     for (std::size_t i = 0; i < tested_runs; ++i) {
       const std::optional<Report> before = run(i);

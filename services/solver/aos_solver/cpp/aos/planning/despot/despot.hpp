@@ -12,14 +12,6 @@
 // A node's bounds are sums over its scenarios, divided by the number of all and discounted from the root.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <utility>
-#include <vector>
-
 #include "aos/base/clock.hpp"
 #include "aos/base/room.hpp"
 #include "aos/belief/belief.hpp"
@@ -103,7 +95,6 @@ class Despot final : public TreePlanner<Model> {
     const ActionNode& node = actions_[nodes_[0].first_action + static_cast<std::size_t>(action)];
     return belief.probability_of(Ending::running) * (origin_ + node.upper);
   }
-  // What it has gained is that over the default policies.
   TreeReach reach(const Belief<Model>& belief, const Estimates& /*estimates*/, int /*choice*/) const override {
     TreeReach result;
     result.beyond.assign(action_count(), 1);

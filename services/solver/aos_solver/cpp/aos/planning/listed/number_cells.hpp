@@ -5,16 +5,8 @@
 // bound of the true value. An upper bound over cells bounds nothing.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <map>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "aos/planning/listed/number_grid.hpp"
 #include "aos/planning/listed/number_reports.hpp"
@@ -158,7 +150,6 @@ class NumberCells {
     return result;
   }
 
-  // Gives the probability of negligible cells to the likeliest cell.
   static std::vector<point_based::Likelihood> without_the_unlikeliest(std::vector<point_based::Likelihood> cells) {
     constexpr double min_probability = error / (4 * static_cast<double>(max_combinations));
     double left_out = 0;

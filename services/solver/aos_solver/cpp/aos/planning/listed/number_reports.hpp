@@ -3,14 +3,7 @@
 // The robot observes less than a report: a draw from each distribution. number_cells.hpp makes observations of it.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <string>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "aos/base/mixed.hpp"
 #include "aos/draws/described_distribution.hpp"
@@ -22,7 +15,6 @@ namespace aos {
 
 class NumberReports final : public NumberSink {
  public:
-  // A number of a skill with one of the distributions that it is reported from.
   struct Part {
     std::uint32_t gauge;  // which number of which skill
     DescribedDistribution distribution;

@@ -3,17 +3,6 @@
 // every belief, so the results of one decision serve all later ones.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "aos/base/clock.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"

@@ -1,11 +1,6 @@
 // SARSOP at every decision, with all states that can be reached, or else with those near the belief.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <utility>
-
 #include "aos/base/switches.hpp"
 #include "aos/base/function_ref.hpp"
 #include "aos/belief/belief.hpp"

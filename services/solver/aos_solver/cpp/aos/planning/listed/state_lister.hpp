@@ -4,11 +4,6 @@
 // Limits are in numbers and work, not in time, so that decisions repeat.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/model/step.hpp"

@@ -4,14 +4,9 @@
 // Most words of a state are the same in all states. These words are kept once, and only the others for each state.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
 #include <iterator>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
@@ -49,7 +44,6 @@ class StateNumbers {
     return state;
   }
 
-  // Whether two states have the same number.
   bool are_same(const State& left, const State& right) const {
     const auto agree = [&](const Word& word) { return read(left, word) == read(right, word); };
     return std::ranges::all_of(words_, agree) && std::ranges::all_of(same_, agree);

@@ -2,18 +2,6 @@
 // space and lends it. The documents' code enumerates each pair of a state and an action once (state_lister.hpp).
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <tuple>
-#include <unordered_map>
-#include <utility>
-#include <vector>
-
 #include "aos/base/add_up.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/base/mixed.hpp"
@@ -114,7 +102,6 @@ class StateSpace {
   std::uint32_t find(const State& state) const {
     return Model::ending(state) == Ending::running ? lister_.numbers().find(state) : no_state;
   }
-  // Whether every state has its rows.
   bool is_closed() const { return listed_ == size(); }
   // Rewards and outcomes by state and action, without starts.
   const point_based::FlatModel& rows() const { return rows_; }

@@ -4,10 +4,6 @@
 // as it is and makes their spread smaller.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "aos/belief/belief.hpp"
 #include "aos/draws/alias.hpp"
 #include "aos/model/step.hpp"

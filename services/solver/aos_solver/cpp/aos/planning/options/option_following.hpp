@@ -2,12 +2,6 @@
 // them earns anything, a search looks for another one.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <utility>
-#include <vector>
-
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_library.hpp"

@@ -1,11 +1,6 @@
 // The options that are known. They are found by searches from states of the belief, and kept from decision to decision.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <utility>
-#include <vector>
-
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
@@ -28,7 +23,6 @@ class OptionLibrary {
 
   const std::vector<Option>& options() const { return options_; }
   const LeafCells<Model>& cells() const { return cells_; }
-  // Those by which searches for ways tell what is new.
   const LeafCells<Model>& searched_cells() const { return searched_cells_; }
   // Whether ways are found only by how many conditions of rewards and goals hold.
   bool counts() const { return counts_; }

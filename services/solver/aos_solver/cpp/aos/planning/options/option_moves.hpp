@@ -1,11 +1,6 @@
 // What can be observed elsewhere: moves, with what is observed on the way or where they lead.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <utility>
-#include <vector>
-
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
@@ -71,7 +66,6 @@ class OptionMoves {
     return best;
   }
 
-  // Adds such a move.
   void add_view(std::vector<OptionCandidate>& candidates, const View& view, double& steps, Sampler& random) {
     if (view.test >= 0) add_way(candidates, {view.move, view.test}, steps, random);
   }

@@ -11,15 +11,6 @@
 //   move, and observe on the way or where it leads.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <numeric>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "aos/base/stable_order.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
@@ -185,7 +176,6 @@ class OptionPolicy {
     if (tried_moves_.size() > OptionMoves<Model>::few) tried_moves_.clear();
   }
 
-  // The options with the highest income by the belief.
   std::vector<std::size_t> likely_options(const BarredActions& barred) const {
     std::vector<std::pair<double, std::size_t>> incomes;
     for (std::size_t o = 0; o < gains_.size(); ++o) {

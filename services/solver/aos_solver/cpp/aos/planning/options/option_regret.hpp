@@ -2,14 +2,6 @@
 // lost where it is not, which is the regret of not knowing it.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <numeric>
-#include <utility>
-#include <vector>
-
 #include "aos/base/statistics.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/options/option_gains.hpp"
@@ -102,7 +94,6 @@ class OptionRegret {
   }
 
  private:
-  // How many steps of the model take as long as to find the best options.
   double steps_of_best() const {
     constexpr double of_gain = 0.02;
     return of_gain * (gains_.size() * belief_.size());

@@ -1,11 +1,6 @@
 // Options as a planner: where states cannot be listed and ways to rewards are found (option_policy.hpp).
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <optional>
-#include <string>
-
 #include "aos/base/clock.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"

@@ -1,13 +1,6 @@
 // A few states of a belief that stand for it, with weights, and what observations make of the weights.
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <numeric>
-#include <unordered_map>
-#include <vector>
-
 #include "aos/base/function_ref.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"

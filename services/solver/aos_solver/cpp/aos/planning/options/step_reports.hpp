@@ -3,12 +3,6 @@
 // random has the reports of one of its next states.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <utility>
-#include <vector>
-
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/enumerator.hpp"
@@ -19,7 +13,6 @@
 
 namespace aos {
 
-// Keeps the distributions that a step reports from.
 class KeptDistributions final : public NumberSink {
  public:
   using Kept = std::vector<std::pair<NumberKey, DescribedDistribution>>;
@@ -31,7 +24,6 @@ class KeptDistributions final : public NumberSink {
   Kept kept_;
 };
 
-// What was observed at a step.
 struct Seen {
   Observation response = default_observation;
   std::vector<double> numbers;  // in the order in which they were reported
@@ -54,7 +46,6 @@ class StepReports {
   }
   const std::vector<Branch>& branches() const { return branches_; }
 
-  // Whether the same is reported with the same probabilities.
   bool is_like(const StepReports& other) const {
     return std::ranges::equal(branches_, other.branches_, [](const Branch& one, const Branch& two) {
       return one.response == two.response && one.numbers == two.numbers && std::abs(one.probability - two.probability) < 1e-9;

@@ -2,8 +2,6 @@
 // down by those that explore. Only actions with enough visits for a reliable value count, in the decision at the root, too.
 #pragma once
 
-#include <cstdint>
-
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
 

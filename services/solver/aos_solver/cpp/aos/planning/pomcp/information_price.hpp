@@ -7,14 +7,6 @@
 // what these still lose for each nat: it looks further ahead, and pays less.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
 #include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"

@@ -4,12 +4,7 @@
 // the cell in place of the numbers: what a policy over cells earns can be earned by numbers, too.
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <unordered_map>
-#include <vector>
 
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"

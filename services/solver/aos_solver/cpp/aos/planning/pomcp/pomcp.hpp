@@ -2,13 +2,6 @@
 // decision and puts its result together; the algorithm is in tree_search.hpp. docs/planning.md lists what departs from the paper.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "aos/base/clock.hpp"
 #include "aos/base/function_ref.hpp"
 #include "aos/base/switches.hpp"
@@ -235,7 +228,6 @@ class Pomcp final : public TreePlanner<Model> {
     rolled_out_ = count > 0 ? sum / count : 0;
   }
 
-  // The mean value of the running part of a belief.
   static double mean_value(const Belief<Model>& belief, auto&& worth) {
     double sum = 0;
     double running = 0;

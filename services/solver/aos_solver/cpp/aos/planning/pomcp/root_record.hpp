@@ -2,11 +2,6 @@
 // budget in time ends once the choice cannot change.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <limits>
-#include <vector>
-
 #include "aos/planning/budget.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
 

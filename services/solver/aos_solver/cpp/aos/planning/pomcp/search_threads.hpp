@@ -2,12 +2,8 @@
 // the same result however the threads are scheduled. The values of the trees are merged by visits.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <exception>
-#include <memory>
 #include <thread>
-#include <vector>
 
 #include "aos/base/clock.hpp"
 #include "aos/base/function_ref.hpp"

@@ -5,14 +5,6 @@
 // the reasons for departures from the paper. Letters: n visits, q value of an action, v value of a history.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <utility>
-#include <vector>
-
 #include "aos/base/switches.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"

@@ -6,15 +6,6 @@
 // It knows nothing of what serves later only, such as a tank that is full, and chance does. Missions tell which one to go by.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <map>
-#include <numeric>
-#include <utility>
-#include <vector>
-
 #include "aos/base/stable_order.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
@@ -160,7 +151,6 @@ class SavingPolicy {
     return ordered;
   }
 
-  // The entropy of what is observed after an action.
   double told_by(int action, double& steps, Sampler& random) const {
     std::map<Observation, double> shares;
     for (std::size_t k = 0; k < belief_.size(); ++k) {

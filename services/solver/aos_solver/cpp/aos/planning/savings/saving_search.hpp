@@ -5,13 +5,6 @@
 // new that the last action has brought about, and that the world does not do by itself (own_changes.hpp; iterated width: Lipovetzky and Geffner, 2012).
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -56,7 +49,6 @@ double returned_along(const RestValues<Model>& values, const Option& way, typena
   return earned + discount * values.value(state);
 }
 
-// What a way saves against the rest.
 template <class Model>
 double saved(const RestValues<Model>& values, const Rest<Model>& rest, const Option& way, const typename Model::State& state, const StepLuck& luck) {
   return returned_along(values, way, state, luck) - rest.returned(way.size() + values.settling());
@@ -139,7 +131,6 @@ class SavingSearch {
     found_.resize(std::min(found_.size(), max_found));
   }
 
-  // The ways that also save something under other luck.
   std::vector<Option> confirmed(const State& start, int width, double& steps, Sampler& random) {
     search(start, width, steps, StepLuck{random});
     std::vector<Option> ways;

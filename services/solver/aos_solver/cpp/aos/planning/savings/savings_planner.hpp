@@ -2,11 +2,6 @@
 // first decision of a mission POMCP that ends in rollouts is asked, too, and decides from then on where it tells more.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <string>
-
 #include "aos/base/clock.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"

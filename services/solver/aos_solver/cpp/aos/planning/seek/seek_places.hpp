@@ -1,16 +1,6 @@
 // The places that moves lead to which tell nothing, the tests that can be made there, the ends, and the ways between.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <map>
-#include <unordered_map>
-#include <utility>
-#include <vector>
-
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"

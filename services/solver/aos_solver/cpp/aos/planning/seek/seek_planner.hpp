@@ -2,11 +2,6 @@
 // (seek_policy.hpp). Where to seek no longer pays, POMCP goes on: it tells less than it returns, and may find the thing.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <utility>
-
 #include "aos/base/clock.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"

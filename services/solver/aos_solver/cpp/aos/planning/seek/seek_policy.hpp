@@ -7,15 +7,6 @@
 // policy, whose true state the code of the model steps, tell what it returns.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <span>
-#include <utility>
-#include <vector>
-
 #include "aos/base/mixed.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
@@ -206,7 +197,6 @@ class SeekPolicy {
 
   const State& any_state() const { return belief_.states()[belief_.size() / 2]; }
 
-  // The first action of the policy.
   int first_action(Sampler& random) {
     const Test* const test = best_test(0, prior_, any_state(), random);
     if (test == nullptr) return ended(0, any_state(), random).action;

@@ -8,9 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
 
 #include "aos/model/values.hpp"
 #include "aos/planning/values/value_constants.hpp"

@@ -1,8 +1,6 @@
 // All outcomes of an action in a state, where they are few.
 #pragma once
 
-#include <vector>
-
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/model/step.hpp"

@@ -2,14 +2,7 @@
 // other value is a cell of its own. A search tells by them what is new.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
 #include <map>
-#include <string>
-#include <vector>
 
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"

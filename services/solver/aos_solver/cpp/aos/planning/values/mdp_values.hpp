@@ -5,13 +5,6 @@
 // there is no room for all layers, only the last one is kept.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
 #include "aos/base/progress.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"

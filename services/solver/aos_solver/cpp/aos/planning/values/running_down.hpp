@@ -1,12 +1,6 @@
 // What of a state only runs one way, such as a battery: it makes no place new, and no test wins by it.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "aos/base/mixed.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
@@ -22,7 +16,6 @@ class RunningDown {
  public:
   using State = typename Model::State;
 
-  // Finds it by random walks from the belief.
   void find(const Belief<Model>& belief, Sampler& random) {
     cells_.prepare(belief, random);
     const std::vector<PlacedNumber> numbers = numbers_of(belief.particles().front().state);

@@ -2,9 +2,6 @@
 // In a model with few states, a ListedState is the number of a state in a table.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/step_table.hpp"
@@ -28,7 +25,6 @@ class ComputedState {
   std::optional<double> expected_reward(int action, ExpectedRewards<Model>& rewards) const {
     return rewards.of(state_, action);
   }
-  // See ObservationDoubts.
   std::optional<double> doubt(int action, ObservationDoubts<Model>& doubts) const { return doubts.of(state_, action); }
   bool has_ended() const { return Model::ending(state_) != Ending::running; }
   // The value with `left` decisions to go; 0 if values are not known.

@@ -3,11 +3,7 @@
 // whether the list, which takes some seconds, is worth beginning.
 #pragma once
 
-#include <algorithm>
 #include <bitset>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
 
 #include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
