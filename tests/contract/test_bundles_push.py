@@ -58,7 +58,7 @@ async def test_a_bundle_is_pushed_listed_and_shown(aos: Aos):
 
 async def test_a_refused_bundle_ends_with_one_and_leaves_the_revision(aos: Aos, tmp_path):
     await aos("bundle", "push", str(BUNDLES / "armadillo-finer"))
-    folder = shutil.copytree(BUNDLES / "armadillo-rough", tmp_path / "rough")
+    folder = shutil.copytree(BUNDLES / "armadillo-finer", tmp_path / "worse")
     (folder / "pick.am").write_text("project: armadillo\nresponse: pick_succeeded\nresponse_rule: True +\n")
     refused = await aos("bundle", "push", str(folder))
     assert refused.exit_code == 1

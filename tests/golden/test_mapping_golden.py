@@ -25,11 +25,6 @@ def compare(folder: Path, expected: Path):
     assert generated == stored
 
 
-def test_the_two_armadillo_bundles_share_their_mappings():
-    rough, finer = (bundle_project(BUNDLES / f"armadillo-{name}") for name in ("rough", "finer"))
-    assert [mapping.python for mapping in emit_project(rough)] == [mapping.python for mapping in emit_project(finer)]
-
-
 def test_a_json_mapping_with_every_construct_is_generated_as_stored():
     compare(ROOT / "docs" / "examples" / "kettle-json", EXPECTED / "kettle")
 

@@ -2,7 +2,7 @@ import math
 
 import msgspec
 import pytest
-from models import engine_of_bundle
+from models import built_bundles, engine_of
 from places import BUNDLES
 from study.played import Played, play
 
@@ -13,12 +13,16 @@ from aos_protocol.messages import Fault, PredictedObservation, TreeQuery, WhatIf
 from aos_runtime.disk.journal import JournalRow
 from aos_solver.study.study import Study
 
-BUNDLE = "armadillo-rough"
+ROUGH = [BUNDLES / name for name in ("armadillo-finer", "armadillo-rough")]
+
+
+def rough_files() -> dict[str, bytes]:
+    return {name: text for bundle in ROUGH for name, text in read_bundle_files(bundle)[0].items()}
 
 
 @pytest.fixture
 async def played() -> Played:
-    return await play(read_bundle_files(BUNDLES / BUNDLE)[0], steps=2)
+    return await play(rough_files(), steps=2)
 
 
 async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Played):
@@ -59,7 +63,7 @@ async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them
         chosen = played.mission.decision(1).action
         forbidden = await study.what_if(WhatIfQuery(1, forbid=(chosen,)))
         assert forbidden.action != chosen == forbidden.before
-        lines = (BUNDLES / BUNDLE / "pick.sd").read_text().split("\n")
+        lines = (ROUGH[1] / "pick.sd").read_text().split("\n")
         place = f"pick.sd:{lines.index('__reward = -2;') + 1}"
         changed = await study.what_if(WhatIfQuery(1, change=(f"{place}=-20",)))
         assert changed.supposed == (f"{place}: -20 instead of -2",)
@@ -68,7 +72,7 @@ async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them
         assert all(not value.action.startswith("pick") for value in without.actions)
         tree = await study.tree(TreeQuery(1, depth=2, branches=2))
         assert tree.root.actions[0].action == chosen
-        async with engine_of_bundle(BUNDLES / BUNDLE) as engine:
+        async with engine_of(await built_bundles(ROUGH)) as engine:
             index = [action.name for action in engine.description.actions].index(chosen)
             predicted = {each.response: each.probability for each in (await engine.predict(index)).predicted}
         assert {response: p for response, p, _ in tree.root.actions[0].after} == predicted
@@ -97,7 +101,7 @@ async def test_what_cannot_be_supposed_is_told(played: Played):
 
 
 async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study():
-    played = await play(read_bundle_files(BUNDLES / BUNDLE)[0], steps=1)
+    played = await play(rough_files(), steps=1)
     chosen = played.mission.decision(1)
     asked = msgspec.structs.replace(
         chosen,

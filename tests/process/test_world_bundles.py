@@ -24,10 +24,10 @@ TO_EASY_TABLE = "navigate(destination=easy_table)"
 @pytest.mark.parametrize(
     ("names", "first"),
     [
-        (("armadillo-finer-blind", "armadillo-rough-blind"), "pick"),
+        (("armadillo-finer-blind", "armadillo-rough"), "pick"),
         (("armadillo-finer-blind",), TO_EASY_TABLE),
-        (("armadillo-finer-enhanced", "armadillo-rough-enhanced"), "pick"),
-        (("armadillo-finer-enhanced",), TO_EASY_TABLE),
+        (("armadillo-finer-blind", "armadillo-finer-enhanced", "armadillo-rough-enhanced"), "pick"),
+        (("armadillo-finer-blind", "armadillo-finer-enhanced"), TO_EASY_TABLE),
     ],
 )
 async def test_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(names, first):
@@ -38,7 +38,7 @@ async def test_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(na
 
 
 async def test_the_blind_robot_serves_and_goes_back_to_the_tables():
-    both = [BUNDLES / name for name in ("armadillo-finer-blind", "armadillo-rough-blind")]
+    both = [BUNDLES / name for name in ("armadillo-finer-blind", "armadillo-rough")]
     async with engine_of(await built_bundles(both)) as engine:
         await engine.reset_belief()
         for action, response in (

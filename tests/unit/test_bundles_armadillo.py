@@ -2,9 +2,9 @@ import re
 
 import pytest
 from places import BUNDLES
-from projects import bundle_project
+from projects import files_project
 
-from aos_language.load import load_bundle
+from aos_language.load import load_files, read_bundle_files
 
 FIGURES = {
     "rough": {"0.5238", "0.0952", "0.0476", "0.4285"},
@@ -12,22 +12,28 @@ FIGURES = {
 }
 
 
+def files_of(*names: str) -> dict[str, bytes]:
+    """The documents of several bundles, a later one's in place of those with the same name."""
+    return {file: text for name in names for file, text in read_bundle_files(BUNDLES / name)[0].items()}
+
+
 @pytest.mark.parametrize("name", FIGURES)
 def test_the_picking_skill_has_the_figures_of_its_statistics(name):
-    (block,) = bundle_project(BUNDLES / f"armadillo-{name}").skill("pick").model.dynamic_model
+    project = files_project(files_of("armadillo-finer", f"armadillo-{name}"))
+    (block,) = project.skill("pick").model.dynamic_model
     lists = re.findall(r"SampleDiscrete\(Ending, \{(.*?)\}", block.code.code)
     assert {figure.strip() for figures in lists for figure in figures.split(",")} == FIGURES[name]
 
 
-def test_without_sensing_and_with_the_enhanced_pick_the_rest_is_the_same():
-    whole, blind, enhanced = (
-        load_bundle(BUNDLES / f"armadillo-finer{kind}").files for kind in ("", "-blind", "-enhanced")
-    )
+def test_without_sensing_the_rest_is_the_same_and_others_have_what_differs_alone():
+    whole = files_of("armadillo-finer")
     sensing = {file for file in whole if file.startswith("observe_")}
-    assert blind == {file: text for file, text in whole.items() if file not in sensing}
-    assert set(enhanced) == set(blind)
-    others = {"armadillo.ef", "pick.am", "pick.sd"}  # The environment has another horizon.
-    assert {file for file in enhanced if enhanced[file] != whole[file]} == others
+    blind = {file: text for file, text in whole.items() if file not in sensing}
+    assert files_of("armadillo-finer-blind") == blind
+    # The environment has another horizon.
+    assert set(files_of("armadillo-finer-enhanced")) == {"armadillo.ef", "pick.am", "pick.sd"}
+    for name in ("armadillo-rough", "armadillo-rough-enhanced"):
+        assert set(files_of(name)) == {"pick.sd"}
 
 
 @pytest.mark.parametrize("name", FIGURES)
@@ -40,19 +46,12 @@ def test_the_enhanced_pick_has_the_figures_of_the_plain_one(name):
     assert weights[0] == weights[1]
 
 
-def test_the_two_bundles_differ_in_the_picking_model_only():
-    rough, finer = (load_bundle(BUNDLES / f"armadillo-{name}").files for name in FIGURES)
-    assert {name for name in finer if finer[name] != rough[name]} == {"pick.sd"}
-    for kind in ("blind", "enhanced"):
-        assert [path.name for path in (BUNDLES / f"armadillo-rough-{kind}").iterdir()] == ["pick.sd"]
-    picks = {(BUNDLES / f"armadillo-rough{kind}" / "pick.sd").read_text() for kind in ("", "-blind")}
-    assert len(picks) == 1
-
-
 def test_our_bundles_say_nothing_but_that_the_rough_weights_do_not_add_up_to_one():
     """The published figures of the rough bundle add up to 1.095, those of the finer one are only rounded."""
     codes = {
-        name: {diagnostic.code for diagnostic in load_bundle(BUNDLES / f"armadillo-{name}").diagnostics}
+        name: {
+            found.code for found in load_files(files_of("armadillo-finer", f"armadillo-{name}")).diagnostics
+        }
         for name in FIGURES
     }
     assert codes == {"rough": {"AOS122"}, "finer": set()}

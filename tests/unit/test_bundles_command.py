@@ -19,7 +19,7 @@ def broken(tmp_path) -> Path:
 
 
 def test_lint_of_a_good_bundle_ends_with_zero():
-    result = aos("lint", BUNDLES / "armadillo-rough", "--no-compile")
+    result = aos("lint", BUNDLES / "armadillo-rough", "--also", BUNDLES / "armadillo-finer", "--no-compile")
     assert result.exit_code == 0
     assert result.output.endswith("0 errors, 1 warning\n")
 
@@ -121,7 +121,7 @@ def test_lint_gives_the_same_as_json(broken: Path, option):
 
 
 def test_inspect_prints_the_documents_with_their_places():
-    result = aos("inspect", BUNDLES / "armadillo-rough")
+    result = aos("inspect", BUNDLES / "armadillo-finer")
     assert result.exit_code == 0
     assert "project armadillo: horizon 10, discount 0.99" in result.output
     assert "variable bool holding_can" in result.output
@@ -131,7 +131,7 @@ def test_inspect_prints_the_documents_with_their_places():
 
 @pytest.mark.parametrize("stage", ["documents", "model", "cpp", "python"])
 def test_inspect_prints_each_stage_as_json(stage):
-    result = aos("inspect", BUNDLES / "armadillo-rough", "--stage", stage, "--json")
+    result = aos("inspect", BUNDLES / "armadillo-finer", "--stage", stage, "--json")
     assert "pick" in str(json.loads(result.output)[stage])
 
 

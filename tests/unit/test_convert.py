@@ -24,9 +24,8 @@ def test_an_original_bundle_says_the_same_in_both_dialects(corpus: Path, name):
     say_the_same(read_bundle_files(corpus / name)[0])
 
 
-@pytest.mark.parametrize("name", ["armadillo-finer", "armadillo-rough"])
-def test_a_shipped_bundle_says_the_same_in_both_dialects(name):
-    say_the_same(read_bundle_files(BUNDLES / name)[0])
+def test_a_shipped_bundle_says_the_same_in_both_dialects():
+    say_the_same(read_bundle_files(BUNDLES / "armadillo-finer")[0])
 
 
 @pytest.mark.parametrize("dialect", ["sdl", "json"])

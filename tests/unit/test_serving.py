@@ -19,7 +19,7 @@ from aos_skills.ros.documented import documented
 def deployment(folder: Path, serve: str) -> Deployment:
     path = folder / "robot.yaml"
     path.write_text(
-        f"aos: 1\nrobot: armadillo\nbundles: [{ROOT}/deploy/bundles/armadillo-rough]\n"
+        f"aos: 1\nrobot: armadillo\nbundles: [{ROOT}/deploy/bundles/armadillo-finer]\n"
         f"world: {ROOT}/deploy/worlds/armadillo.yaml\nbind: {{'*': pybullet}}\n{serve}"
     )
     return read_deploy_file(path)
