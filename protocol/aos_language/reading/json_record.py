@@ -127,12 +127,13 @@ class Record:
             if name in self._known:
                 continue
             message, span = f'unknown key "{name}" in {self.what}', self.source.span(key.start + 1)
-            if home := _HOMES.get(name):
-                self.findings.error("AOS102", message, span, f"It belongs in `{home}`")
-            elif self._lacking:
+            home = f"It belongs in `{_HOMES[name]}`" if name in _HOMES else ""
+            if self._lacking:
                 near = get_close_matches(name, self._lacking, 1, _STANDS_FOR)
                 hint = f"Did you mean `{near[0]}`?" if near else f"Missing here: {quoted(self._lacking)}"
-                self.findings.error("AOS102", message, span, hint)
+                self.findings.error("AOS102", message, span, home or hint)
+            elif home:
+                self.findings.warning("AOS102", message, span, f"{home}. Here it is ignored")
             else:
                 unknown = partial(self.findings.unknown, code="AOS102", severity=Severity.WARNING)
                 unknown(name, self._known, message, span, "It is ignored")
