@@ -44,6 +44,7 @@ def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(tmp_path):
         text = system.aos("why", "2")[1]
         assert len(text.splitlines()) <= LINES
         assert text.startswith("step 2: ")
+        assert system.aos("why")[1].startswith("step 3: ")
         assert "AOS501: there is no action run" in system.aos("why", "1", "--instead", "run")[2]
 
         code, out, error = system.aos("replay", str(run))

@@ -21,14 +21,14 @@ from aos_solver.study.study import Study
 
 T = TypeVar("T", Why, WhatIf)
 
-Step = Annotated[int, typer.Argument(min=1, metavar="STEP", help="The number of the decision")]
+Step = Annotated[int, typer.Argument(min=0, metavar="STEP", help="The decision's number; 0 is the newest")]
 
 
 @command('Example: aos why 3 --instead "navigate(destination=corridor)"')
 @on_system
 def why(
     system: System,
-    step: Step,
+    step: Step = 0,
     instead: Annotated[
         str, typer.Option("--instead", metavar="ACTION", help="Not the runner-up but this action")
     ] = "",
@@ -57,7 +57,7 @@ def why(
 @on_system
 def whatif(
     system: System,
-    step: Step,
+    step: Step = 0,
     forbid: Annotated[
         list[str] | None, typer.Option("--forbid", metavar="ACTION", help="Not this action now; repeatable")
     ] = None,

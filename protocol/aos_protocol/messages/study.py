@@ -15,7 +15,10 @@ from aos_protocol.messages.mission import ActionValue, BeliefSummary
 
 
 class WhyQuery(Message, frozen=True):
-    """Asks why a decision was made, and not `instead` another action; by default the runner-up."""
+    """Asks why a decision was made, and not `instead` another action; by default the runner-up.
+
+    In all questions step 0 is the newest decision.
+    """
 
     step: int
     instead: str = ""

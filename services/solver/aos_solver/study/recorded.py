@@ -50,12 +50,14 @@ class RecordedMission(msgspec.Struct, frozen=True):
         return (event.said for event in self.events if isinstance(event.said, kind))
 
     def decision(self, step: int) -> DecisionRecord:
-        """The decision of a step; SkillError AOS501 if there was none."""
-        found = next((made for made in self.decisions if made.step == step), None)
+        """The decision of a step, or for step 0 the newest; SkillError AOS501 if there was none."""
+        last = self.decisions[-1].step if self.decisions else 0
+        found = next((made for made in self.decisions if made.step == (step or last)), None)
         if found is None:
-            last = self.decisions[-1].step if self.decisions else 0
             hint = f"Name a step from 1 to {last}" if last else "It has none yet, or ended before the first"
-            raise SkillError(f"the mission has no decision of step {step}", code="AOS501", hint=hint)
+            raise SkillError(
+                f"the mission has no decision{f' of step {step}' if step else ''}", code="AOS501", hint=hint
+            )
         return found
 
     def outcome(self, step: int) -> DecisionRecord | None:

@@ -102,6 +102,7 @@ class Study:
         """A replay at the belief of a step's decision, from where the last question has left it if it can."""
         recorded = await self._source.recorded(mission)
         decision = recorded.decision(step)
+        step = decision.step
         replay = self._replay
         if replay is None or not replay.can_go_on(recorded, step):
             await self._drop()
