@@ -131,6 +131,7 @@ class Trial {
                 problem_.model.horizon, problem_.model.states, claimed, lower, upper);
   }
 
+  // After an action and an observation by chance.
   Belief next_of(const Belief& belief) {
     const auto by_observation = reference_.successors(belief, generator_.below(problem_.model.actions));
     double chosen = generator_.uniform();

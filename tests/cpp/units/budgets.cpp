@@ -30,6 +30,7 @@ struct Unlisted : TableModel {
   }
 };
 
+// The steps that a planner takes of a prepared search.
 double steps_of(aos::Planner<Unlisted>& planner, const aos::Belief<Unlisted>& belief) {
   const aos::BarredActions none;
   const aos::Question<Unlisted> question{belief, {.simulations = simulations}, horizon, none};

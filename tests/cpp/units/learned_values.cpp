@@ -11,6 +11,7 @@ using Belief = aos::Belief<TableModel>;
 
 constexpr int horizon = 60;
 
+// Values of a problem that are learned from its first belief.
 struct Learned {
   explicit Learned(const units::Problem& problem, int decisions = horizon, std::uint64_t seed = 1)
       : random{seed}, belief{taken(problem, random)}, is_usable{values.prepare(belief, decisions, random)} {}

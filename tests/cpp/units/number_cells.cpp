@@ -22,6 +22,7 @@ std::uint32_t normal(NumberReports& reports, double mean, double deviation, std:
   return reports.add(skill, response);
 }
 
+// The likelihoods of each report by itself.
 point_based::Rows<point_based::Likelihood> each(const NumberReports& reports) {
   point_based::Rows<point_based::Likelihood> rows;
   rows.first.push_back(0);

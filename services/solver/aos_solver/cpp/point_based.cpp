@@ -21,6 +21,7 @@ constexpr std::uint64_t between_looks = 20'000;  // at the clock, in operations
 struct OnlineSarsop::Solver {
   explicit Solver(FlatModel flat) : model(std::move(flat)), outlook(model), regions(model), sarsop(model, regions) {}
 
+  // Whether all states that are worth anything are in one region.
   bool is_in_one_region(const std::vector<std::pair<std::uint32_t, double>>& belief) const {
     std::uint32_t region = nowhere;
     for (const auto& [state, probability] : belief) {

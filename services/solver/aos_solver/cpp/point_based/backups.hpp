@@ -112,6 +112,7 @@ class Backups {
     graph_.refresh_lower(node);
   }
 
+  // The length of the longest of the successors' best plans.
   std::uint32_t longest_plan(const Branch& branch) {
     std::uint32_t longest = graph_.is_endless() ? 0 : 1;
     for (const Successor& successor : branch.successors) {

@@ -123,6 +123,7 @@ class BeliefGraph {
     }
   }
 
+  // Finds the successors of a branch.
   void open(const Node& node, Branch& branch) {
     if (branch.is_open) return;
     branch.is_open = true;

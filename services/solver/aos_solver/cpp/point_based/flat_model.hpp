@@ -58,6 +58,7 @@ struct FlatModel {
   std::span<const Outcome> outcomes_of(std::size_t state) const {
     return {outcomes.begin(row(state, 0)), outcomes.end(row(state, actions - 1))};
   }
+  // Those of the values by row that are of a state's actions.
   std::span<const double> of_actions(const std::vector<double>& values, std::size_t state) const { return {&values[row(state, 0)], actions}; }
 
   // The expected value of a row's next state.

@@ -66,6 +66,7 @@ class Regions {
 
   // Whether nothing can be earned or lost from a state on.
   bool is_worthless(std::uint32_t state) const { return is_worthless_[state]; }
+  // How many states the largest region has.
   std::size_t largest() const {
     std::size_t largest = 0;
     for (const Region& region : all) largest = std::max(largest, region.states.size());
@@ -98,6 +99,7 @@ class Regions {
     return worthless;
   }
 
+  // The states from which each state is entered.
   Rows<std::uint32_t> predecessors() const {
     Rows<std::uint32_t> before;
     before.first.assign(model_.states + 1, 0);

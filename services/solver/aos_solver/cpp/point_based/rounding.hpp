@@ -16,6 +16,7 @@ inline constexpr double ulp = 0x1p-52;
 // The error of a sum of at most `longest` terms, relative to the sum of their absolute values.
 inline double rounding_of(std::size_t longest) { return (static_cast<double>(longest) + 16) * ulp; }
 
+// The number of elements of the longest row.
 template <class Element>
 std::size_t longest_row(const Rows<Element>& rows) {
   std::size_t longest = 0;

@@ -45,6 +45,7 @@ class Sarsop {
     return count;
   }
 
+  // Forgets what trials have found out.
   void start_over() {
     forget_roots();
     graph_.start_over();
@@ -234,6 +235,7 @@ class Sarsop {
     return branch;
   }
 
+  // The node of a belief with the whole horizon to go.
   std::uint32_t anew_of(std::uint32_t number) {
     const Belief belief = graph_[number].belief;
     return graph_.node_of(graph_[number].region, static_cast<std::uint32_t>(model_.horizon), belief);

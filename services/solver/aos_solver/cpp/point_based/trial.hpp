@@ -17,6 +17,7 @@ class Trial {
 
   // The nodes of the last trial, from its start on.
   const std::vector<std::uint32_t>& path() const { return path_; }
+  // How many sampled trials began with each action.
   const std::vector<std::uint32_t>& begun() const { return begun_; }
   void set_begun(std::vector<std::uint32_t> begun) { begun_ = std::move(begun); }
   void forget_begun() { begun_.assign(model_.actions, 0); }

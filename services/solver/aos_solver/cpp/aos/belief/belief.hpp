@@ -47,6 +47,7 @@ class Belief {
   const std::vector<Particle>& particles() const { return cloud_.particles; }
   // Whether it is the exact belief, but for differences that nobody would notice.
   bool is_exact() const { return error_bound_ <= negligible_error; }
+  // Whether the states were drawn at random.
   bool is_drawn() const { return source_ == Source::drawing; }
   // Whether more than half of the states were drawn only once, so that there are others. A belief without lineages does not
   // know; then it is enough that there are so many states.

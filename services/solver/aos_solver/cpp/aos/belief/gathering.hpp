@@ -103,6 +103,7 @@ class Gathering {
  public:
   using State = typename Model::State;
 
+  // Returns the number of the state's particle.
   std::size_t add(const State& state, double weight) {
     const auto is_it = [&](std::uint32_t number) { return particles_[number].state == state; };
     const std::size_t number = numbers_.find_or_add(Model::hash(state), static_cast<std::uint32_t>(particles_.size()), is_it);

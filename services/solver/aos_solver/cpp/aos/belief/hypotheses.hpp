@@ -32,6 +32,7 @@ class Hypotheses {
 
   explicit Hypotheses(Belief<Model> belief) { all_.push_back({1, {}, std::move(belief)}); }
 
+  // The mixture of all hypotheses.
   const Belief<Model>& belief() const { return mixture_ ? *mixture_ : all_.front().belief; }
   // The belief in which nothing ran that was not observed; null where that is the belief itself.
   const Belief<Model>* cautious() const { return cautious_ ? &*cautious_ : nullptr; }
@@ -242,6 +243,7 @@ class Hypotheses {
     return after;
   }
 
+  // After what changes each belief and tells nothing.
   Hypotheses changed(auto&& change) const {
     Hypotheses after = *this;
     for (Hypothesis& each : after.all_) each.belief = change(each.belief);

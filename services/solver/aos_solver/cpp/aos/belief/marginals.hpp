@@ -94,6 +94,7 @@ class Marginals {
     std::vector<Leaf> all;
   };
 
+  // The bits in which any state differs from the first one.
   std::vector<std::byte> differing_bits() const {
     std::vector<std::byte> differences(Model::state_bytes());
     const std::byte* const first = Model::bytes_of(particles_.front().state);

@@ -205,6 +205,7 @@ class Moves {
     return ratio >= 1 || random_.flag(ratio);
   }
 
+  // The state after a block.
   const State& passed(Passage<Model>& passage, std::size_t place) {
     while (passage.passed() <= place) pass(passage, passage.passed());
     return passage.state(place);

@@ -51,6 +51,7 @@ class Passage {
     if (!states_.empty()) __builtin_prefetch(states_.data());
   }
 
+  // After how many blocks the state is known.
   std::size_t passed() const { return states_.size(); }
   const State& state(std::size_t place) const { return states_[place]; }
   bool is_repeated(std::size_t place) const { return places_[place].is_repeated; }

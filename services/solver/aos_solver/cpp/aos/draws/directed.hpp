@@ -44,6 +44,7 @@ class DirectedDraws : public Draws<DirectedDraws> {
     if (sink_ == nullptr) return ignore_number();
     sink_->take(key, distribution);
   }
+  // Sets the sink of reported numbers and returns the one before.
   NumberSink* report_to(NumberSink* sink) { return std::exchange(sink_, sink); }
 
  protected:

@@ -50,6 +50,7 @@ class LoopChain {
     return is_a_tree || bytes_ > max_key_bytes;
   }
 
+  // The number of a way into a loop.
   std::uint32_t entry(const std::string& way) {
     const auto [found, is_new] = entries_.try_emplace(way, static_cast<std::uint32_t>(entries_.size()));
     if (is_new) bytes_ += way.size();
@@ -68,6 +69,7 @@ class LoopChain {
   // Writes the draws on the way to a head, and the heads on it in their order; the last is the head itself.
   void write_way(Number to, std::vector<int>& draws, std::vector<Stop>& stops) const;
 
+  // Adds a way from the head that is being listed to another one.
   void add_edge(Number to, double probability) {
     listed_.push_back({to, probability});
     if (heads_[to].is_listed) return;
@@ -76,6 +78,7 @@ class LoopChain {
     waiting_ += mass_of_listed_ * probability;
     likeliest_.push({head.mass, to});
   }
+  // Begins the list of ways from a head.
   void begin(Number head) {
     heads_[head].is_listed = true;
     mass_of_listed_ = head == start ? 1 : heads_[head].mass;

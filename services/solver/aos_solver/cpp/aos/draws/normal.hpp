@@ -9,6 +9,7 @@ namespace aos {
 
 namespace detail {
 
+// The coefficients begin with the constant.
 template <std::size_t Count>
 double polynomial(const double (&coefficients)[Count], double x) {
   double value = 0;

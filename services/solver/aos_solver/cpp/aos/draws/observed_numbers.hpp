@@ -53,6 +53,7 @@ class ObservedNumbers {
 
 [[noreturn, gnu::cold]] void reported_twice(NumberKey key);
 
+// Draws the numbers that a step reports.
 class RecordedNumbers final : public NumberSink {
  public:
   explicit RecordedNumbers(Sampler& random) : random_(random) {}

@@ -84,9 +84,11 @@ class Draws {
     return name + 1 + normalised(copied.weights, copied.count);
   }
 
+  // Draws a value of an enum whose values count from 0.
   template <class Enum, class Weights = std::initializer_list<double>>
     requires std::is_enum_v<Enum>
   Enum SampleDiscrete(const Weights& weights) { return static_cast<Enum>(SampleDiscrete(-1, weights)); }
+  // Draws one of several values.
   template <class Value, class Weights = std::initializer_list<double>>
   Value SampleOf(std::initializer_list<Value> values, const Weights& weights) {
     return values.begin()[SampleDiscrete(-1, weights)];
@@ -195,6 +197,7 @@ inline int place_in(const double* weights, int count, double place) {
   return last;
 }
 
+// Draws at random.
 class Sampler : public Draws<Sampler>, public Xoshiro {
  public:
   using Xoshiro::Xoshiro;
@@ -211,6 +214,7 @@ class Sampler : public Draws<Sampler>, public Xoshiro {
   void report(std::uint32_t key, const Distribution& distribution) {
     if (sink_ != nullptr) sink_->take(key, distribution);
   }
+  // Sets the sink of reported numbers and returns the one before.
   NumberSink* report_to(NumberSink* sink) { return std::exchange(sink_, sink); }
 
   int choose(const double* weights, int count, double total) { return place_in(weights, count, uniform() * total); }

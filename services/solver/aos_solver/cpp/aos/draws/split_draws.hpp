@@ -74,6 +74,7 @@ class SplitDraws final : public DirectedDraws {
   static constexpr int none = -1;
   static constexpr long max_light_branches = 6;
 
+  // What holds of a path up to a draw.
   struct Way {
     double weight;
     long branches;  // of a light path
@@ -92,6 +93,7 @@ class SplitDraws final : public DirectedDraws {
     at_ = {start_weight_, 1, true};
     begin_numbers();
   }
+  // The last draws are as many as have few combinations.
   void learn_last_draws() {
     long combinations = 1;
     next_last_draws_ = choices_.size();

@@ -36,7 +36,9 @@ struct ErasedModel {
   static int response_count(int skill) { return compiled_model.skills[skill].response_count; }
   static const char* response_name(int skill, int response) { return compiled_model.skills[skill].responses[response]; }
   static bool has_text_response(int skill) { return compiled_model.skills[skill].has_text_response; }
+  // Whether all grounded actions of the skill lead to the same states with the same rewards.
   static bool has_alike_groundings(int skill) { return compiled_model.skills[skill].has_alike_groundings; }
+  // Whether the reward follows from the state and the grounded action.
   static bool has_certain_rewards(int skill) { return compiled_model.skills[skill].has_certain_rewards; }
   // How many numbers and arrays of numbers a step of the skill may report besides its response.
   static int number_count(int skill) { return compiled_model.skills[skill].number_count; }

@@ -63,6 +63,7 @@ Observation text_observation(std::string_view text);
 // The text behind a number that this thread has made; empty for any other number.
 std::string_view observation_text(Observation number);
 
+// The name of an observation in the documents of a skill.
 template <class Model>
 std::string name_of_observation(int skill, Observation observation) {
   if (observation >= 0) return Model::response_name(skill, static_cast<int>(observation));

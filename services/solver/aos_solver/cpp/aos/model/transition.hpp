@@ -80,6 +80,7 @@ struct EndingSteps {
   }
 };
 
+// The defaults for what an environment document leaves out.
 struct EnvironmentDefaults {
   using Steps = EndingSteps;
   static constexpr bool is_one_state = false;
@@ -173,6 +174,7 @@ Observation observation_of(const auto& effect) {
 template <class State, bool is_kept>
 using Kept = std::conditional_t<is_kept, const State, State&>;
 
+// The phases of a step after the extrinsic changes.
 template <class Environment, class Skill>
 Step run_skill(auto& state, auto& state_, auto& next, bool meets_precondition, int execution_time,
                double extrinsic_reward, const auto& parameters, auto& random) {

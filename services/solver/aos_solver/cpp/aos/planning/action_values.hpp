@@ -41,6 +41,7 @@ inline Estimates values_of_promise(Estimates estimates, const Promise& promise, 
   return estimates;
 }
 
+// The values of actions whose estimates come from a tree that ends in rollouts.
 inline Estimates values_of_tree(Estimates estimates, const TreeReach& reach, int choice) {
   const double moved = reach.gain * reach.beyond[choice] / 2;
   for (std::size_t a = 0; a < estimates.size(); ++a) {

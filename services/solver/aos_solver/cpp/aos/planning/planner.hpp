@@ -89,6 +89,7 @@ class Planner {
 
   // Searches below an action that is being carried out, until `is_over()`, which is called every millisecond or so.
   virtual void ponder(int /*action*/, const Question<Model>& /*question*/, Sampler& /*random*/, FunctionRef<bool()> /*is_over*/) {}
+  // Keeps what serves the decision after an action and an observation.
   virtual void advance(int /*action*/, Observation /*observation*/) {}
   // Drops what holds for the last belief only.
   virtual void forget() {}

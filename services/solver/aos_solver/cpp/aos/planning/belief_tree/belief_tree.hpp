@@ -288,6 +288,7 @@ class BeliefTree final : public TreePlanner<Model> {
     return std::min(node.value, node.seen - node.share * std::max(like.seen - like.value, 0.0));
   }
 
+  // The best action with enough visits.
   const ActionNode& best_action(std::uint32_t node) {
     std::uint32_t most = 0;
     for (const ActionNode& action : actions_of(node)) most = std::max(most, action.n);

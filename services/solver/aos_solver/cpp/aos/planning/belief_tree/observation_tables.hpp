@@ -22,6 +22,7 @@ struct NumberedReport {
   std::vector<std::uint32_t> distributions;  // of the numbers
 };
 
+// An observation that was drawn from a table.
 struct TabledObservation {
   static constexpr std::uint32_t nothing = 0xffffffffu;
 

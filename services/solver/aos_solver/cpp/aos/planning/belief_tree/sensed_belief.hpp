@@ -53,6 +53,7 @@ class SensedBelief {
   }
   void keep(Sampler& random) { thin_out(after_, tree_states, random); }
 
+  // The states that the last draw began with.
   const SmallBelief& before() const { return start_; }
   const SmallBelief& after() const { return after_; }
   // The largest share of the belief after the draw, before `keep`, that is a belief of these states.

@@ -44,6 +44,7 @@ class SensedPath final : public DirectedDraws, private NumberSink {
 
   SensedPath() { report_to(this); }
 
+  // Follows the enumerator and notes the outcomes of its draws.
   void follow(Enumerator& path, std::vector<int>& taken) {
     start(0);
     path_ = &path;

@@ -19,6 +19,7 @@ class SensingRuns {
 
   explicit SensingRuns(const StateSpace<Model>& space) : space_(space) {}
 
+  // Walks the draws of an action that shape the next state.
   void list(std::uint32_t number, int action) {
     const ForgottenTexts forgotten;
     number_ = number;
@@ -70,6 +71,7 @@ class SensingRuns {
     return source_.report(step.observation, text_);
   }
 
+  // Whether a draw of a sensor changes several pieces of a text in one of some runs.
   bool has_joint_pieces() {
     for (std::size_t i = 0; i < tested_runs; ++i) {
       const std::optional<Report> before = run(i);

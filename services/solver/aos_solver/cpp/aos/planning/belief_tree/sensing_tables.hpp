@@ -45,6 +45,7 @@ class SensingTables {
   std::uint64_t version() const { return version_; }
   double unknown_share() const { return tables_.unknown_share(); }
 
+  // Makes the tables of a row's outcomes.
   void fill(std::size_t row) {
     const auto& rows = space_.rows().outcomes;
     for (std::size_t outcome = rows.first[row]; outcome < rows.first[row + 1]; ++outcome) table(row, outcome);
@@ -114,6 +115,7 @@ class SensingTables {
     }
     return result;
   }
+  // The number of a piece of the skill's texts.
   std::uint32_t symbol_of(const std::string& piece) {
     return symbols_.try_emplace(std::to_string(skill_) + "=" + piece, static_cast<std::uint32_t>(symbols_.size())).first->second;
   }

@@ -95,6 +95,7 @@ class Despot final : public TreePlanner<Model> {
     const ActionNode& node = actions_[nodes_[0].first_action + static_cast<std::size_t>(action)];
     return belief.probability_of(Ending::running) * (origin_ + node.upper);
   }
+  // What it has gained is that over the default policies.
   TreeReach reach(const Belief<Model>& belief, const Estimates& /*estimates*/, int /*choice*/) const override {
     TreeReach result;
     result.beyond.assign(action_count(), 1);

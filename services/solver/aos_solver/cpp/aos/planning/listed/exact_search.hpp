@@ -74,6 +74,7 @@ class ExactSearch final : public Planner<Model> {
   static constexpr double share_of_budget = 0.25;
   static constexpr std::uint64_t max_beliefs = 1'000'000;
 
+  // Tries to compute the values with a share of the budget.
   bool evaluate(const Belief<Model>& belief, Budget budget, int horizon) {
     evaluation_.emplace(space_.rows(), observable_, limits_of(budget, horizon));
     horizon_ = horizon;

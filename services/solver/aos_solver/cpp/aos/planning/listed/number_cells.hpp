@@ -150,6 +150,7 @@ class NumberCells {
     return result;
   }
 
+  // Gives the probability of negligible cells to the likeliest cell.
   static std::vector<point_based::Likelihood> without_the_unlikeliest(std::vector<point_based::Likelihood> cells) {
     constexpr double min_probability = error / (4 * static_cast<double>(max_combinations));
     double left_out = 0;

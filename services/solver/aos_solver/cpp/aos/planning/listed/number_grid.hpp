@@ -51,6 +51,7 @@ class NumberGrid {
     if (cell > 0) losses_[cell - 1] = loss_at(cell - 1);
     if (cell < losses_.size()) losses_[cell] = loss_at(cell);
   }
+  // Merges as long as the sum of the losses is negligible.
   void merge_alike() {
     const double allowed = negligible_share * std::max(information_, 0.0) + negligible_loss;
     double lost = 0;

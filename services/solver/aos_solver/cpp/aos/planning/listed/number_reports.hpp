@@ -15,6 +15,7 @@ namespace aos {
 
 class NumberReports final : public NumberSink {
  public:
+  // A number of a skill with one of the distributions that it is reported from.
   struct Part {
     std::uint32_t gauge;  // which number of which skill
     DescribedDistribution distribution;

@@ -23,6 +23,7 @@ class ObservationNumbers {
     return known(numbers[static_cast<std::size_t>(observation)], skill, observation);
   }
 
+  // The skill's observation with this number.
   Observation of(int skill, std::uint32_t number) const {
     const auto& responses = of_responses_[static_cast<std::size_t>(skill)];
     const auto response = std::find(responses.begin(), responses.end(), number);

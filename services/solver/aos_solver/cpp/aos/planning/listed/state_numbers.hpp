@@ -44,6 +44,7 @@ class StateNumbers {
     return state;
   }
 
+  // Whether two states have the same number.
   bool are_same(const State& left, const State& right) const {
     const auto agree = [&](const Word& word) { return read(left, word) == read(right, word); };
     return std::ranges::all_of(words_, agree) && std::ranges::all_of(same_, agree);

@@ -102,6 +102,7 @@ class StateSpace {
   std::uint32_t find(const State& state) const {
     return Model::ending(state) == Ending::running ? lister_.numbers().find(state) : no_state;
   }
+  // Whether every state has its rows.
   bool is_closed() const { return listed_ == size(); }
   // Rewards and outcomes by state and action, without starts.
   const point_based::FlatModel& rows() const { return rows_; }

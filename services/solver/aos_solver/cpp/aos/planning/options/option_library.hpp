@@ -23,6 +23,7 @@ class OptionLibrary {
 
   const std::vector<Option>& options() const { return options_; }
   const LeafCells<Model>& cells() const { return cells_; }
+  // Those by which searches for ways tell what is new.
   const LeafCells<Model>& searched_cells() const { return searched_cells_; }
   // Whether ways are found only by how many conditions of rewards and goals hold.
   bool counts() const { return counts_; }

@@ -66,6 +66,7 @@ class OptionMoves {
     return best;
   }
 
+  // Adds such a move.
   void add_view(std::vector<OptionCandidate>& candidates, const View& view, double& steps, Sampler& random) {
     if (view.test >= 0) add_way(candidates, {view.move, view.test}, steps, random);
   }

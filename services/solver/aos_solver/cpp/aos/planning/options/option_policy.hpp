@@ -176,6 +176,7 @@ class OptionPolicy {
     if (tried_moves_.size() > OptionMoves<Model>::few) tried_moves_.clear();
   }
 
+  // The options with the highest income by the belief.
   std::vector<std::size_t> likely_options(const BarredActions& barred) const {
     std::vector<std::pair<double, std::size_t>> incomes;
     for (std::size_t o = 0; o < gains_.size(); ++o) {

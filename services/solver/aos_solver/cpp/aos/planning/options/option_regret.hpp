@@ -94,6 +94,7 @@ class OptionRegret {
   }
 
  private:
+  // How many steps of the model take as long as to find the best options.
   double steps_of_best() const {
     constexpr double of_gain = 0.02;
     return of_gain * (gains_.size() * belief_.size());

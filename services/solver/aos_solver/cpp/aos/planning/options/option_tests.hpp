@@ -21,6 +21,7 @@ class OptionTests {
   static constexpr double least_information = 1e-3;  // in nats
   static constexpr int most_repeats = 8;
 
+  // How many steps of the model take as long as to weigh so many states by what is drawn from them.
   static double steps_of_weighing(std::size_t states) {
     constexpr double of_likelihood = 0.2;
     return of_likelihood * OptionRegret<Model>::observations * states;

@@ -20,6 +20,7 @@ class Promises {
     due_.reset();
   }
 
+  // A decision tells this value of an action with this mean reward.
   void tell(int action, double value, double reward, double discount) { told_ = {action, (value - reward) / discount}; }
   void note_taken(int action) {
     due_ = told_ && told_->action == action ? std::optional{told_->later} : std::nullopt;

@@ -13,6 +13,7 @@
 
 namespace aos {
 
+// Keeps the distributions that a step reports from.
 class KeptDistributions final : public NumberSink {
  public:
   using Kept = std::vector<std::pair<NumberKey, DescribedDistribution>>;
@@ -24,6 +25,7 @@ class KeptDistributions final : public NumberSink {
   Kept kept_;
 };
 
+// What was observed at a step.
 struct Seen {
   Observation response = default_observation;
   std::vector<double> numbers;  // in the order in which they were reported
@@ -46,6 +48,7 @@ class StepReports {
   }
   const std::vector<Branch>& branches() const { return branches_; }
 
+  // Whether the same is reported with the same probabilities.
   bool is_like(const StepReports& other) const {
     return std::ranges::equal(branches_, other.branches_, [](const Branch& one, const Branch& two) {
       return one.response == two.response && one.numbers == two.numbers && std::abs(one.probability - two.probability) < 1e-9;

@@ -228,6 +228,7 @@ class Pomcp final : public TreePlanner<Model> {
     rolled_out_ = count > 0 ? sum / count : 0;
   }
 
+  // The mean value of the running part of a belief.
   static double mean_value(const Belief<Model>& belief, auto&& worth) {
     double sum = 0;
     double running = 0;

@@ -59,6 +59,7 @@ class RestValues {
     return !used_.empty();
   }
 
+  // What an action returns that is taken for ever.
   double returned(int action, const State& start, const StepLuck& luck) const {
     return returned_in(horizon_, start, [&](const State&) { return action; }, [&](State& state, int taken, std::size_t step) {
       Sampler random = luck.of(step);
@@ -67,6 +68,7 @@ class RestValues {
   }
   // How many rests follow a way before its states are valued: what an action does later counts then, where no table tells it.
   std::size_t settling() const { return static_cast<std::size_t>(std::max(horizon_ / nearer, 1)); }
+  // The action of the rest.
   int action() const { return action_; }
   // What a state is worth; 0 where the mission is over.
   double value(const State& state) const {
@@ -132,6 +134,7 @@ class RestValues {
                        [&](State& state, int taken, std::size_t) { return Model::step(state, taken, random); });
   }
 
+  // Takes a state from each random walk.
   std::vector<State> walked(const Belief<Model>& belief, Sampler& random) {
     const std::size_t wanted = std::clamp(max_steps / static_cast<std::size_t>(std::max(horizon_, 1)), fewest_examples, most_examples);
     std::vector<State> examples;

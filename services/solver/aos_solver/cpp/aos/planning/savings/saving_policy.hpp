@@ -151,6 +151,7 @@ class SavingPolicy {
     return ordered;
   }
 
+  // The entropy of what is observed after an action.
   double told_by(int action, double& steps, Sampler& random) const {
     std::map<Observation, double> shares;
     for (std::size_t k = 0; k < belief_.size(); ++k) {

@@ -49,6 +49,7 @@ double returned_along(const RestValues<Model>& values, const Option& way, typena
   return earned + discount * values.value(state);
 }
 
+// What a way saves against the rest.
 template <class Model>
 double saved(const RestValues<Model>& values, const Rest<Model>& rest, const Option& way, const typename Model::State& state, const StepLuck& luck) {
   return returned_along(values, way, state, luck) - rest.returned(way.size() + values.settling());
@@ -131,6 +132,7 @@ class SavingSearch {
     found_.resize(std::min(found_.size(), max_found));
   }
 
+  // The ways that also save something under other luck.
   std::vector<Option> confirmed(const State& start, int width, double& steps, Sampler& random) {
     search(start, width, steps, StepLuck{random});
     std::vector<Option> ways;

@@ -16,6 +16,7 @@ class RunningDown {
  public:
   using State = typename Model::State;
 
+  // Finds it by random walks from the belief.
   void find(const Belief<Model>& belief, Sampler& random) {
     cells_.prepare(belief, random);
     const std::vector<PlacedNumber> numbers = numbers_of(belief.particles().front().state);

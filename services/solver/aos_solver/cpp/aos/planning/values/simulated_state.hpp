@@ -25,6 +25,7 @@ class ComputedState {
   std::optional<double> expected_reward(int action, ExpectedRewards<Model>& rewards) const {
     return rewards.of(state_, action);
   }
+  // See ObservationDoubts.
   std::optional<double> doubt(int action, ObservationDoubts<Model>& doubts) const { return doubts.of(state_, action); }
   bool has_ended() const { return Model::ending(state_) != Ending::running; }
   // The value with `left` decisions to go; 0 if values are not known.
