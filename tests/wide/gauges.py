@@ -71,18 +71,11 @@ __moduleResponse = told;"""
 class Gauges(World):
     """The camera and the gauges as the documents describe them."""
 
-    discount = 0.98
-
     def __init__(self, count: int, rng: random.Random):
-        super().__init__(rng)
+        super().__init__(rng, 0.98, drive=count + 1, read=1, check=1, wipe=1, swap=1, report=2)
         self.bad = [rng.random() < _BAD for _ in range(count)]
         self.told = [False] * count
         self.at, self.dust, self.is_broken = count, 0, False
-
-    def actions(self) -> list[tuple[str, int]]:
-        drives = [("drive", place) for place in range(len(self.bad) + 1)]
-        others = [(skill, 0) for skill in ("read", "check", "wipe", "swap", "report")]
-        return [*drives, *others, ("report", 1)]
 
     def act(self, skill: str, value: int = 0) -> str:
         base, draw = len(self.bad), self.rng.random

@@ -63,16 +63,11 @@ __moduleResponse = left;"""
 class Survey(World):
     """The sites as the documents describe them."""
 
-    discount = _DISCOUNT
-
     def __init__(self, sites: int, rng: random.Random):
-        super().__init__(rng)
+        super().__init__(rng, _DISCOUNT, drive=2, probe=1, dig=1, leave=1)
         self.good = [rng.random() < _GOOD for _ in range(sites)]
         self.taken = [False] * sites
         self.at = 0
-
-    def actions(self) -> list[tuple[str, int]]:
-        return [("drive", 0), ("drive", 1), ("probe", 0), ("dig", 0), ("leave", 0)]
 
     def act(self, skill: str, value: int = 0) -> str:
         told, reward = "", -0.5
@@ -139,15 +134,9 @@ __moduleResponse = guessed;"""
 class Questions(World):
     """The number as the documents describe it."""
 
-    discount = _DISCOUNT
-
     def __init__(self, lamps: int, rng: random.Random):
-        super().__init__(rng)
-        self.number, self.lamps = rng.randrange(_NUMBERS), lamps
-
-    def actions(self) -> list[tuple[str, int]]:
-        counts = {"ask": _NUMBERS - 1, "see": self.lamps, "guess": _NUMBERS, "leave": 1}
-        return [(skill, value) for skill, count in counts.items() for value in range(count)]
+        super().__init__(rng, _DISCOUNT, ask=_NUMBERS - 1, see=lamps, guess=_NUMBERS, leave=1)
+        self.number = rng.randrange(_NUMBERS)
 
     def act(self, skill: str, value: int = 0) -> str:
         reward = -0.3 if skill in {"ask", "see"} else 0.0

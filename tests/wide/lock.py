@@ -65,16 +65,10 @@ if (right == {count}) {{
 class Lock(World):
     """The lock as the documents describe it; a turn has the value `2 * dial + up`."""
 
-    discount = _DISCOUNT
-
     def __init__(self, count: int, rng: random.Random):
-        super().__init__(rng)
+        super().__init__(rng, _DISCOUNT, turn=2 * count, probe=count, pull=1)
         self.digits = [rng.randrange(_DIGITS) for _ in range(count)]
         self.dials = [0] * count
-
-    def actions(self) -> list[tuple[str, int]]:
-        count = len(self.dials)
-        return [*(("turn", i) for i in range(2 * count)), *(("probe", i) for i in range(count)), ("pull", 0)]
 
     def act(self, skill: str, value: int = 0) -> str:
         if skill == "turn":

@@ -85,16 +85,11 @@ __moduleResponse = is_there ? taken : missed;"""
 class Photo(World):
     """The drone as the documents describe it."""
 
-    discount = _DISCOUNT
-
     def __init__(self, size: int, rng: random.Random):
-        super().__init__(rng)
+        super().__init__(rng, _DISCOUNT, fly=4, look=1, locate=1, take=1, land=1)
         self.size, self.charge, self.has_photo = size, _CHARGE, False
         self.x = self.y = 0
         self.at = (rng.randrange(size), rng.randrange(size))
-
-    def actions(self) -> list[tuple[str, int]]:
-        return [*(("fly", way) for way in range(4)), ("look", 0), ("locate", 0), ("take", 0), ("land", 0)]
 
     def act(self, skill: str, value: int = 0) -> str:
         if skill == "land":

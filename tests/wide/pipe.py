@@ -58,15 +58,10 @@ __moduleResponse = is_there ? plugged : missed;"""
 class Pipe(World):
     """The pipe as the documents describe it."""
 
-    discount = 0.99
-
     def __init__(self, size: int, rng: random.Random):
-        super().__init__(rng)
+        super().__init__(rng, 0.99, sail=4, sample=1, plug=1, land=1)
         self.size, self.charge, self.has_it = size, float(_CHARGE), False
         self.x, self.leak, self.value = 0, rng.randrange(size), 0.0
-
-    def actions(self) -> list[tuple[str, int]]:
-        return [*(("sail", speed) for speed in range(4)), ("sample", 0), ("plug", 0), ("land", 0)]
 
     def act(self, skill: str, value: int = 0) -> str:
         if skill == "land":

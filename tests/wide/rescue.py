@@ -108,19 +108,13 @@ __moduleResponse = is_here ? helped : nobody;"""
 class Rescue(World):
     """The rooms as the documents describe them."""
 
-    discount = _DISCOUNT
-
     def __init__(self, high: int, rng: random.Random):
-        super().__init__(rng)
+        super().__init__(rng, _DISCOUNT, go=4, force=4, listen=1, look=1, assist=1, charge=1)
         self.high, self.rooms = high, _WIDE * high
         self.people = [1 + rng.randrange(self.rooms - 1) for _ in range(2)]
         self.is_helped = [False, False]
         self.is_jammed = [rng.random() < _JAMS for _ in range(2 * self.rooms)]
         self.at, self.battery = 0, _BATTERY
-
-    def actions(self) -> list[tuple[str, int]]:
-        ways = [(skill, direction) for skill in ("go", "force") for direction in range(4)]
-        return [*ways, ("listen", 0), ("look", 0), ("assist", 0), ("charge", 0)]
 
     def through(self, room: int, direction: int) -> tuple[int, int] | None:
         """The door from a room in a direction, and the room behind; None where there is a wall."""

@@ -83,15 +83,9 @@ if (state.held >= 0) {{
 class Towers(World):
     """The blocks as the documents describe them."""
 
-    discount = _DISCOUNT
-
     def __init__(self, count: int, rng: random.Random):
-        super().__init__(rng)
+        super().__init__(rng, _DISCOUNT, pick=count, put=count, lay=1)
         self.count, self.on, self.held = count, _start(count), -1
-
-    def actions(self) -> list[tuple[str, int]]:
-        blocks = range(self.count)
-        return [*(("pick", block) for block in blocks), *(("put", block) for block in blocks), ("lay", 0)]
 
     def is_free(self, block: int) -> bool:
         return block != self.held and block not in self.on

@@ -9,10 +9,11 @@ MOST_STEPS = 120  # in a mission
 class World(ABC):
     """The hidden state of a problem, and what was earned in it so far."""
 
-    discount = 1.0
-
-    def __init__(self, rng: random.Random):
+    def __init__(self, rng: random.Random, discount: float, **actions: int):
+        """Has for each skill of `actions` so many values of its parameter, from 0."""
         self.rng = rng
+        self.discount = discount
+        self.actions = [(skill, value) for skill, count in actions.items() for value in range(count)]
         self.earned = 0.0
         self.steps = 0
         self.has_ended = False
@@ -20,10 +21,6 @@ class World(ABC):
     @property
     def is_over(self) -> bool:
         return self.has_ended or self.steps >= MOST_STEPS
-
-    @abstractmethod
-    def actions(self) -> list[tuple[str, int]]:
-        """All actions: skills with the value of their parameter."""
 
     @abstractmethod
     def act(self, skill: str, value: int = 0) -> str:
@@ -34,7 +31,6 @@ class World(ABC):
         self.steps += 1
 
     def play_at_random(self) -> float:
-        actions = self.actions()
         while not self.is_over:
-            self.act(*self.rng.choice(actions))
+            self.act(*self.rng.choice(self.actions))
         return self.earned
