@@ -253,7 +253,7 @@ def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(tm
     broken = tmp_path / "rover.pomdpx"
     text = (PROBLEMS / "rover.pomdpx").read_text()
     broken.write_text(text.replace("<Terminal>0.8</Terminal>", "<Terminal>0.7</Terminal>"))
-    with pytest.raises(DocumentError, match=r":31: .* of place_1 sum to 0.9 for do=move, place_0=home"):
+    with pytest.raises(DocumentError, match=r":31:1: .* of place_1 sum to 0.9 for do=move, place_0=home"):
         read_problem(broken)
 
 

@@ -59,7 +59,7 @@ class _Frame:
         if (wrong := np.abs(totals - 1) > _SUM_TOLERANCE).any():
             row = int(np.argmax(wrong))
             raise DocumentError(
-                f"{name}:{table.line}: the probabilities of {table.own} sum to {totals[row]:g}"
+                f"{name}:{table.place}: the probabilities of {table.own} sum to {totals[row]:g}"
                 f"{self._given(table, factor, row, action or {})}",
                 code="AOS122",
                 hint="They have to sum to 1",

@@ -90,12 +90,15 @@ Factor = DenseFactor | SparseFactor
 
 
 class Table(msgspec.Struct, frozen=True, dict=True):
-    """`P(variables[-1] | the others)`, or a reward over all of them. Later entries override earlier ones."""
+    """`P(variables[-1] | the others)`, or a reward over all of them. Later entries override earlier ones.
+
+    `place` is its line and column in the file.
+    """
 
     variables: tuple[Variable, ...]
     entries: list[Entry]
     is_distribution: bool
-    line: int
+    place: str
 
     @property
     def own(self) -> str:

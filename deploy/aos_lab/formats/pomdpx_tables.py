@@ -17,7 +17,7 @@ def read_table(
     element: Element, variables: Sequence[Variable], is_distribution: bool, findings: ProblemFindings
 ) -> Table:
     """The table of a `CondProb` or `Func` whose variables are known; mistakes are findings."""
-    table = Table(tuple(variables), [], is_distribution, element.line)
+    table = Table(tuple(variables), [], is_distribution, f"{element.line}:{element.column}")
     parameter = element.first("Parameter")
     if parameter is None:
         findings.error("AOS105", f"{element.tag} has no Parameter", element)
