@@ -59,7 +59,7 @@ ALL = {"known", "count", "row", "cup"}
         ("while (state__.count-- > 0) state__.level++;", {"count"}),
         ("switch (state.known) { case 1: state__.level = 2; break; default: break; }", {"known"}),
         ("state__.row[state.known] = 1; state__.level = state.row[0];", {"known", "row"}),
-        ("for (int value : state.row) state__.level += value;", {"row"}),
+        ("for (int n = state.known; int value : state.row) state__.level += n * value;", {"known", "row"}),
         ("for (int& r : state__.row) { r = state.known; } state__.level = state.row[1];", {"known", "row"}),
         ("auto at = state__.row.begin(); *at = state.known; __reward = state__.row[0];", {"known", "row"}),
         ("state__.level = state.cup.full ? 1 : 2;", {"cup"}),

@@ -199,6 +199,7 @@ class _Reading:
         if whole is None or declarator is None:
             self.used |= control | names_in(node)
             return
+        self.statement(node.child_by_field_name("initializer"), control, None)
         self._no_effects(whole, control)
         inner = control | names_in(whole)
         self.looped |= inner
