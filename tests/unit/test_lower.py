@@ -49,7 +49,7 @@ def particle_of(act: str, home: str = "") -> list[str]:
         ("state__.total = 1;", ["total"]),
         ("state__.lamp = On; state__.row[1] += 2;", ["lamp", "row"]),
         ("int& counted = state__.count; counted++;", ["count"]),
-        ("for (auto& cell : state__.row) cell = 0;", ["row"]),
+        ("for (auto& n = state__.total; auto& cell : state__.row) cell = n++;", ["row", "total"]),
         ("state__.row.at(state.count) = 1;", ["row"]),
         ("state__.row.at(0)++;", ["row"]),
         ("sort(state__.row.begin(), state__.row.end());", ["row"]),

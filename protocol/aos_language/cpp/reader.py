@@ -288,7 +288,7 @@ class TreeReader:
             declarator = node.child_by_field_name("declarator")
             binds = declarator is not None and "reference" in declarator.type and not is_constant
             self._push([node.child_by_field_name("right")], Access.BIND if binds else Access.READ)
-            self._push([node.child_by_field_name("body")])
+            self._push([node.child_by_field_name("initializer"), node.child_by_field_name("body")])
         self._push(child for child in node.children if child.is_error or child.is_missing)
 
     def _declarator(
