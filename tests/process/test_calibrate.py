@@ -112,7 +112,7 @@ def test_a_model_that_is_compiled_first_is_told(tmp_path: Path, monkeypatch: pyt
 
 
 def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path):
-    blind = [DEPLOY / "bundles" / f"armadillo-{pick}-blind" for pick in ("finer", "rough")]
+    blind = [DEPLOY / "bundles" / f"armadillo-{name}" for name in ("finer-blind", "rough")]
     recorded_missions = recorded(tmp_path, "armadillo-rough-blind.yaml", 1, 15)
     unseen = tuple(
         msgspec.structs.replace(

@@ -3,7 +3,7 @@ import signal
 from pathlib import Path
 
 import pytest
-from models import built_bundle, engine_of, engine_of_bundle, engine_of_text, simulated
+from models import built_bundle, built_bundles, engine_of, engine_of_bundle, engine_of_text, simulated
 from places import BUNDLES, DATA
 from processes import descendants, kill_engine, until_ended
 
@@ -39,8 +39,8 @@ CORPUS_NAMES = {
 }
 
 
-async def _exact(folder: Path, kind: str) -> dict[str, float]:
-    async with engine_of_bundle(folder / f"armadillo-{kind}") as engine:
+async def _exact(*bundles: Path) -> dict[str, float]:
+    async with engine_of(await built_bundles(bundles)) as engine:
         return {value.action: value.q for value in (await engine.exact_values(8)).actions}
 
 
@@ -57,14 +57,15 @@ async def test_an_answer_that_takes_long_tells_how_far_it_is_and_is_the_same():
 
 @pytest.mark.parametrize("kind", ["rough", "finer"])
 async def test_exact_values_of_our_armadillo_are_the_published_ones(kind):
-    values = await _exact(BUNDLES, kind)
+    values = await _exact(BUNDLES / "armadillo-finer", BUNDLES / f"armadillo-{kind}")
     assert EXACT_AT_8[kind] == pytest.approx({name: values[name] for name in EXACT_AT_8[kind]}, abs=5e-4)
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("kind", ["rough", "finer"])
 async def test_each_action_of_the_original_armadillo_is_worth_what_ours_is(kind, corpus: Path):
-    ours, theirs = [await _exact(folder, kind) for folder in (BUNDLES, corpus)]
+    ours = await _exact(BUNDLES / "armadillo-finer", BUNDLES / f"armadillo-{kind}")
+    theirs = await _exact(corpus / f"armadillo-{kind}")
     renamed = {CORPUS_NAMES[name]: value for name, value in ours.items()}
     assert theirs == pytest.approx(renamed, abs=1e-9)
 

@@ -45,8 +45,9 @@ def test_the_environment_names_the_project_of_a_push(files: dict[str, bytes]):
     assert pushed_project({"readme.md": b""}) == ""
 
 
-def test_new_and_changed_skills_are_told_apart():
-    rough, finer = (load_bundle(BUNDLES / f"armadillo-{name}").project for name in ("rough", "finer"))
+def test_new_and_changed_skills_are_told_apart(files: dict[str, bytes]):
+    finer = load_files(files).project
+    rough = load_files(files | read_bundle_files(BUNDLES / "armadillo-rough")[0]).project
     assert rough is not None
     assert finer is not None
     assert changed_skills(rough, finer) == ((), ("pick",))
