@@ -24,6 +24,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from aos_protocol.errors import SkillError
 from aos_runtime.adapters import Observed
 
 Side = Enum("Side", {"LEFT": "left"})
@@ -96,6 +97,15 @@ async def says_it_to_none(call):
 
 async def nonsense(call):
     return Observed(3)
+
+async def lose():
+    raise SkillError("the arm is lost", code="AOS504")
+
+async def grouped(call):
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(lose())
+
+decorated = lambda call: grouped(call)
 
 async def wordless(call):
     return Observed("done", {}, {"camera": 3})
@@ -228,6 +238,8 @@ async def test_what_goes_wrong_in_a_function_fails_that_call_alone(robot: Robot)
         ("says_too_much", {}, "AOS510", "the field made_by of a message on /scan cannot be sent"),
         ("says_it_to_none", {}, "AOS510", "the topic None is no text"),
         ("nonsense", {}, "AOS504", "the observation of /nonsense is 3, which is no word"),
+        ("grouped", {}, "AOS504", "the arm is lost"),
+        ("decorated", {}, "AOS504", "the arm is lost"),
         ("wordless", {}, "AOS504", "the observation of /wordless is 3, which is no word"),
         ("numberless", {}, "AOS504", "the answer of /numberless cannot be read: AttributeError"),
         ("drive", {"z": 1}, "AOS502", "The function takes x, y; the mapping sends z"),

@@ -21,7 +21,7 @@ from aos_runtime.adapters.settings import AdapterSettings, Binding
 from aos_runtime.bus.subscription import Subscription
 from aos_runtime.older_python import timeout
 from aos_runtime.parties.fence import Fence, epoch_of_solver, is_waited_for
-from aos_runtime.processes.lifecycle import Service
+from aos_runtime.processes.lifecycle import Service, root_cause
 
 MIDDLEWARE_AWAY_S = 2.0
 """A motion is stopped when nobody could hear of it for this long."""
@@ -190,17 +190,18 @@ class Calls:
         error = what_it_awaits if task.cancelled() else task.exception()
         if error is None:
             return task.result()
-        is_unknown = isinstance(error, AosError) and error.code == "AOS504"
+        cause = root_cause(error)  # Tasks of a group fail together.
+        is_unknown = isinstance(cause, AosError) and cause.code == "AOS504"
         if is_late and not is_unknown:
             raise SkillError(
                 f"{call.path} took longer than it may, {round(call.deadline_s, 1):g} s", code="AOS503"
             )
         if task.cancelled() and call.is_cancelled:
             raise SkillError(f"{call.path} was cancelled: {running.reason}", code="AOS507")
-        if isinstance(error, AosError):
-            raise error
+        if isinstance(cause, AosError):
+            raise cause
         _log.error("%s failed", call.path, exc_info=error)
-        message = f"{call.path} failed: {error_text(error)}"
+        message = f"{call.path} failed: {error_text(cause)}"
         raise SkillError(message, code="AOS510", hint=f"See the log of {self._settings.service}") from error
 
     async def cancel(self, cancel: Cancel, _: str) -> Cancelled:

@@ -180,6 +180,8 @@ class PythonAdapter:
                 raise _failure(call, error) from error
         else:
             answer = await self._on_thread(function, call, fields)
+            if inspect.iscoroutine(answer):  # As of a decorated `async def`.
+                answer = await answer
         return {} if answer is None else answer
 
     async def _on_thread(self, function: Callable[..., Any], call: Call, fields: dict[str, Any]) -> Any:
