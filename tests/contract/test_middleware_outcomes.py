@@ -59,6 +59,14 @@ async def test_a_skill_with_a_skill_document_alone_is_called_and_observed(system
     assert (faults[2].code, faults[2].hint) == ("AOS402", "Did you mean `seen`?")
 
 
+async def with_sense(system: System, text: str):
+    project = system.registry.current.project
+    others = [skill for skill in project.skills if skill.name != "sense"]
+    skills = (*others, skill_of(text, "sense.am"))
+    system.registry.announce(msgspec.structs.replace(project, skills=skills))
+    await system.state(2)
+
+
 async def test_only_messages_of_the_activation_count_and_all_of_them(system: System):
     async def publish_many(call: SkillCall) -> dict[str, Any]:
         for level in range(200 if call.id.step < 3 else 0):
@@ -74,17 +82,27 @@ async def test_only_messages_of_the_activation_count_and_all_of_them(system: Sys
     assert (await system.activate("sense", 3)).response == "quiet"
 
 
+async def test_messages_that_come_faster_than_code_evaluates_them_are_a_fault(system: System, monkeypatch):
+    async def publish_many(_: SkillCall) -> dict[str, Any]:
+        for _ in range(100):
+            system.adapter.publish("/level", {"data": 9})
+        return {}
+
+    monkeypatch.setattr("aos_middleware.activations.heard_topics.EVALUATE_S", 0.1)
+    slow = SENSE.replace("code:\n", "code:\nimport time\ntime.sleep(0.1)\n")
+    await with_sense(system, slow)
+    await system.adapter.serve("/sense", publish_many)
+    outcome = await system.activate("sense", 1)
+    assert_ended(outcome, "unknown", "AOS403", "messages on /level come faster than code evaluates them")
+
+
 async def test_a_first_message_that_comes_behind_the_answer_is_awaited(system: System):
     async def publish_behind(call: SkillCall) -> dict[str, Any]:
         if call.id.step == 1:
             asyncio.get_running_loop().call_later(0.02, system.adapter.publish, "/level", {"data": 9})
         return {}
 
-    project = system.registry.current.project
-    sense = skill_of(SENSE.replace("initial_value: 0\n", ""), "sense.am")
-    others = [skill for skill in project.skills if skill.name != "sense"]
-    system.registry.announce(msgspec.structs.replace(project, skills=(*others, sense)))
-    await system.state(2)
+    await with_sense(system, SENSE.replace("initial_value: 0\n", ""))
     await system.adapter.serve("/sense", publish_behind)
     assert (await system.activate("sense", 1)).response == "heard"
     why = "; level has no value, for no message came on /level"

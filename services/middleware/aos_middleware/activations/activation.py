@@ -201,7 +201,7 @@ class _Activation:
         topics = self._topics
         streams = [self._around.bus.listen(key, TopicMessage) for key in topics.keys]
         async with merged(*streams, queue_size=QUEUE_SIZE) as messages, asyncio.TaskGroup() as tasks:
-            tasks.create_task(topics.take(messages))
+            taking = tasks.create_task(topics.take(messages))
             stopping = tasks.create_task(self.stop.follow())
             try:
                 result = await self.call.run(fields)
@@ -211,6 +211,7 @@ class _Activation:
             finally:
                 stopping.cancel()
                 messages.close()
+            await topics.finish(taking)
         if messages.dropped:
             self._notice([f"{self._request.skill}: {messages.dropped} topic messages came too fast"])
         if topics.fault is not None:

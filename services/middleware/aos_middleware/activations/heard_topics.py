@@ -7,7 +7,7 @@ from typing import Any
 
 from aos_middleware.activations.surroundings import Surroundings
 from aos_middleware.robot.stopping import Stop
-from aos_middleware.workers.evaluator import Evaluator
+from aos_middleware.workers.evaluator import Evaluator, MappingFault
 from aos_protocol.documents import LocalSource
 from aos_protocol.errors import AosError
 from aos_protocol.messages import SkillResult, TopicMessage
@@ -19,6 +19,9 @@ CATCH_UP_S = 0.5
 As long it waits for a first one where a variable has no value without it: a node of ROS sends what it
 publishes beside its answer, and later.
 """
+
+EVALUATE_S = 5.0
+"""What came before the call ended is evaluated for so long after it; then the mapping has failed."""
 
 QUEUE_SIZE = 4096
 
@@ -43,6 +46,7 @@ class HeardTopics:
             for variable in evaluator.emitted.mapping.local_variables
             if variable.source is LocalSource.TOPIC
         ]
+        self._span = heard[0].span if heard else evaluator.emitted.mapping.span
         self._topic_of = {around.keys.topic(variable.topic): variable.topic for variable in heard}
         self._awaited = {
             around.keys.topic(variable.topic) for variable in heard if variable.initial_value is None
@@ -63,6 +67,17 @@ class HeardTopics:
                 self._last_numbers[key] = message.number
                 self._odd += self._around.odd.take(self._topic_of[key], message.fields)
             self._has_received.set()
+
+    async def finish(self, taking: asyncio.Task[None]) -> None:
+        """Waits until all that came before the call ended has been evaluated. The solver waits, too."""
+        _, late = await asyncio.wait({taking}, timeout=EVALUATE_S)
+        if late:
+            taking.cancel()
+            message = (
+                f"messages on {' and '.join(self._topic_of.values())} come faster than code evaluates them"
+            )
+            hint = "Have them sent less often, or the code do less for each"
+            self.fault = self.fault or MappingFault(message, self._span, code="AOS403", hint=hint)
 
     async def _evaluate(self, messages: list[tuple[str, dict[str, Any]]]) -> None:
         """Hands messages over to mapping code, and has the skill stopped where one of them says so."""

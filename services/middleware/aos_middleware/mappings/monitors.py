@@ -21,6 +21,9 @@ from aos_runtime.bus.subscription import merged
 LISTEN_S = 5.0
 """An activation waits this long for new monitors to be at work."""
 
+EVALUATE_S = 5.0
+"""An outcome waits so long for what a monitor has heard to be evaluated."""
+
 _QUEUE_SIZE = 4096
 
 _log = logging.getLogger("aos.middleware")
@@ -162,7 +165,12 @@ class _Monitor:
 
     async def response(self) -> tuple[str, str]:
         """The response to what it has heard since the last one, and why there is none; empty for nothing."""
-        async with self._asking:
+        try:
+            async with asyncio.timeout(EVALUATE_S):
+                await self._asking.acquire()
+        except TimeoutError:
+            return "", "its messages come faster than its code evaluates them"
+        try:
             self.has_risen = False
             fault, self._fault = self._fault, ""
             if fault or not self._has_heard:
@@ -174,6 +182,8 @@ class _Monitor:
             except AosError as error:
                 await self._begin()
                 return "", str(error)
+        finally:
+            self._asking.release()
 
     async def _begin(self) -> None:
         try:
