@@ -21,7 +21,7 @@ publishes beside its answer, and later.
 """
 
 EVALUATE_S = 5.0
-"""What came before the call ended is evaluated for so long after it; then the mapping has failed."""
+"""Messages of a call are evaluated for so long after its end; then the mapping has failed."""
 
 QUEUE_SIZE = 4096
 
@@ -73,9 +73,8 @@ class HeardTopics:
         _, late = await asyncio.wait({taking}, timeout=EVALUATE_S)
         if late:
             taking.cancel()
-            message = (
-                f"messages on {' and '.join(self._topic_of.values())} come faster than code evaluates them"
-            )
+            topics = " and ".join(self._topic_of.values())
+            message = f"messages on {topics} come faster than code evaluates them"
             hint = "Have them sent less often, or the code do less for each"
             self.fault = self.fault or MappingFault(message, self._span, code="AOS403", hint=hint)
 
