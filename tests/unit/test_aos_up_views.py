@@ -221,6 +221,8 @@ def test_the_screen_says_how_far_a_decision_is_and_for_how_long_it_has_been_made
     assert "listing states: 2 of 3 ... 7 s" in shown(screen)
     screen.take(MissionState("m", "planning", 0, 0.0, remark="computing first bounds: 1 of 10"))
     assert "computing first bounds: 1 of 10 ... 0 s" in shown(screen)
+    screen.take(MissionState("m", "compiling", 0, 0.0, remark="compiling " * 12))
+    assert "… ... 0 s" in shown(screen, 80, 24)
 
 
 def test_the_screen_shows_steps_values_and_belief_bars():

@@ -147,8 +147,10 @@ class Screen:
             yield Text("" if self.remark in (ending, self.printed) else self.remark)
         elif self.remark != ending:
             elapsed_s = time.monotonic() - self.remark_since_s
-            text = Text(f"{self.remark} ... {elapsed_s:.0f} s").append_text(self._of_the_skill())
-            text.truncate(width - _SPINNER_CELLS, overflow="ellipsis")
+            room, clock = width - _SPINNER_CELLS, f" ... {elapsed_s:.0f} s"
+            text = Text(self.remark)
+            text.truncate(room - len(clock), overflow="ellipsis")
+            text.append(clock).append_text(self._of_the_skill()).truncate(room, overflow="ellipsis")
             yield Spinner("dots", text)
 
     def _of_the_skill(self) -> Text:
