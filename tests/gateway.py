@@ -250,7 +250,7 @@ def worn_system(folder: Path) -> Iterator[Path]:
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(text)
     with _up(folder, "worn.yaml") as lines:
-        next(line for line in lines if line.get("phase") == "ended")
+        next(line for line in lines if "`aos mission start`" in line.get("text", ""))
         yield (folder / "runs/latest").resolve()
 
 

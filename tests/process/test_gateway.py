@@ -350,6 +350,7 @@ def test_whoever_views_a_living_mission_is_told_what_happens_steers_it_and_can_s
 def test_the_next_mission_of_a_system_that_stays_begins_with_what_is_asked_for(tmp_path):
     with worn_system(tmp_path) as run, gateway(tmp_path) as served:
         path = f"/v1/runs/{run.name}/missions"
+        assert served.ask(f"/v1/runs/{run.name}").json["ending"] == "waiting"
         assert served.ask(f"/v1/missions/{run.name}-1").json["parameters"] == {"room": "hall"}
         refused = served.post(path, {"given": ["state.is_lit == maybe"]})
         assert (refused.status, refused.json["code"]) == (422, "AOS110")

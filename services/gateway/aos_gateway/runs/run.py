@@ -38,8 +38,8 @@ _LOOK_S = 0.5
 
 
 class RunEntry(msgspec.Struct, frozen=True, omit_defaults=True):
-    """One run: a start of a system. `ending` is `running` while it goes on, `killed` or
-    `not_started` if nobody ended it.
+    """One run: a start of a system. `ending` is `running` while it goes on, `waiting` between missions,
+    `killed` or `not_started` if nobody ended it.
 
     `missions` are the names of its missions, the oldest first. Of a system at an endpoint `directory` is
     empty.
@@ -182,6 +182,11 @@ class KeptRun(Run):
             return False
         return self.directory.is_held or self.directory.read_summary() is not None
 
+    def _ending_without_summary(self, newest: int, is_running: bool) -> str:
+        if not is_running:
+            return ending_without_summary(self.directory.path)
+        return "waiting" if stays(self.directory.path) and self.directory.read_summary(newest) else "running"
+
     def _entry(self) -> RunEntry:
         path, record = self.directory.path, self.record
         numbers = list(mission_folders(path)) or [1]  # The first one has no folder before it begins.
@@ -193,7 +198,7 @@ class KeptRun(Run):
             run=self.name,
             robot=record.robot,
             is_running=is_running,
-            ending=summary.ending if summary else "running" if is_running else ending_without_summary(path),
+            ending=summary.ending if summary else self._ending_without_summary(numbers[-1], is_running),
             started=record.started,
             deploy_file=record.deploy_file,
             directory=str(path),

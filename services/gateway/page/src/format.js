@@ -70,6 +70,7 @@ const ENDINGS = {
   stopped: "Stopped",
   killed: "Killed",
   running: "Running",
+  waiting: "Waiting",
   unreachable: "Unreachable",
 };
 export const ending = (name) => ENDINGS[name] ?? name;
