@@ -287,6 +287,9 @@ def test_a_folder_of_runs_names_all_of_them(tmp_path):
     assert chosen_runs([tmp_path / "runs"], None) == [runs[1], runs[0]]
     with pytest.raises(DeployError, match="is not a run directory"):
         chosen_runs([tmp_path / "runs" / "other"], None)
+    with pytest.raises(DeployError, match="not a run") as refused:
+        chosen_runs([tmp_path], None)
+    assert refused.value.hint == f"Its runs are in {tmp_path / 'runs'}"
     (runs[0] / "missions" / "2").mkdir(parents=True)
     with pytest.raises(DeployError, match="not a run") as refused:
         chosen_runs([runs[0] / "missions" / "2"], None)

@@ -192,6 +192,8 @@ class RunDirectory:
             return msgspec.json.decode(path.read_bytes(), type=RunRecord)
         except OSError as error:
             run, hint = self.path.parent.parent, did_you_mean_path(self.path) or "`aos runs` lists the runs"
+            if (self.path / "runs").is_dir():
+                hint = f"Its runs are in {self.path / 'runs'}"
             if self.path in mission_folders(run).values():
                 hint = f"Name {run} instead, and --mission {self.path.name} where the command takes it"
             raise DeployError(

@@ -79,7 +79,8 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
                 raise ValueError("it is damaged, for its checksum does not fit")
             return cls(header, AlphaVectors.of_bytes(len(header.actions), header.regions, data))
         except OSError as error:
-            raise PlanningError(f"cannot read {path}: {error.strerror}", code="AOS321") from error
+            hint = "`aos solve TARGET --out FILE.policy` writes one"
+            raise PlanningError(f"cannot read {path}: {error.strerror}", code="AOS321", hint=hint) from error
         except (*UNREADABLE, ValueError) as error:
             raise PlanningError(
                 f"{path} is no policy of this version: {error}", code="AOS321", hint="Make it with aos solve"
