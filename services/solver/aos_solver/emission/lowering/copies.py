@@ -13,17 +13,11 @@ from aos_language.cpp.facts import READING_FUNCTIONS
 from aos_language.cpp.snippets import Access, Call, Cpp, DeclarationKind, Extent, Mention, strip_comments
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_protocol.documents import Assignment, Environment, SkillModel
-from aos_solver.emission.lowering.writes import LAMBDA
+from aos_solver.emission.lowering.writes import LAMBDA, may_refer, value_types
 
 _WHOLE_STATE = "*"
 _RESULTS = frozenset({"__reward", "__moduleResponse", "__moduleResponseStr"})
 _READING_METHODS = frozenset({"at", "back", "contains", "count", "empty", "front", "length", "size"})
-_VALUES = frozenset({
-    "array", "auto", "bool", "char", "const", "constexpr", "double", "float", "int", "int64_t", "long", "map",
-    "optional", "pair", "set", "short", "signed", "size_t", "static", "std", "string", "tuple", "uint8_t",
-    "unordered_map", "unordered_set", "unsigned", "vector",
-})  # fmt: skip
-"""The words in types of variables that refer to nothing else, whatever they start with."""
 _GIVING_VALUES = READING_FUNCTIONS | {
     "accumulate", "all_of", "any_of", "binary_search", "count", "count_if", "distance", "equal", "none_of",
 }  # fmt: skip
@@ -70,11 +64,7 @@ def copies_of(model: SkillModel, environment: Environment) -> Copies:
     """Returns the copies that a step of this skill needs; models with one state have no copies."""
     dynamic = model.dynamic_model
     shared = shared_code_of(environment)
-    names = _Names(
-        shared.changing,
-        _GIVING_VALUES | shared.reading,
-        _VALUES | {enum.name for enum in environment.enums} | {each.name for each in environment.compounds},
-    )
+    names = _Names(shared.changing, _GIVING_VALUES | shared.reading, value_types(environment))
     extrinsic = environment.extrinsic_changes
     if all(cpp.is_empty for _, cpp in snippets_of(extrinsic)):
         return Copies(_reads_changed(dynamic, ("state", "state_"), "state__", names), keeps_state_=False)
@@ -160,10 +150,9 @@ def _bound(cpp: Cpp, names: _Names) -> Iterator[Extent]:
     for declaration in cpp.declarations:
         if declaration.initial is None:
             continue
-        words = re.findall(r"[A-Za-z_]\w*", declaration.type)
-        if not types.issuperset(words) or not {"&", "*"}.isdisjoint(declaration.type):
+        if may_refer(declaration.type, types):
             yield declaration.initial
-        elif "auto" in words:
+        elif re.search(r"\bauto\b", declaration.type):
             yield from _views_in(cpp, declaration.initial, names)
     for mention in cpp.mentions:
         if mention.assigned is not None and len(mention.path) == 1 and mention.path[0] not in _RESULTS:

@@ -5,7 +5,7 @@ compile: constants are constant to the compiler.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from aos_language.cpp.facts import READING_FUNCTIONS
 from aos_language.cpp.flow import STATES
@@ -27,7 +27,26 @@ from aos_solver.emission.lowering.code import BELIEF, sections_of
 LAMBDA = re.compile(r"\[\s*[&=]?[\w\s,&=]*\]\s*[({]")
 """The beginning of a lambda."""
 
+_VALUES = frozenset({
+    "array", "auto", "bool", "char", "const", "constexpr", "double", "float", "int", "int64_t", "long", "map",
+    "optional", "pair", "set", "short", "signed", "size_t", "static", "std", "string", "tuple", "uint8_t",
+    "unordered_map", "unordered_set", "unsigned", "vector",
+})  # fmt: skip
+"""The words in types of variables that refer to nothing else, whatever they start with."""
+_GIVES_REFERENCE = re.compile(r"->\s*(?:decltype|[\w:<>, ]*&)")
+_ONLY_READS = re.compile(r"const [\w:<>, ]+&$|const char\*$")
 _CHANGING = (Access.WRITE, Access.UPDATE, Access.BIND)
+
+
+def value_types(environment: Environment) -> frozenset[str]:
+    """Returns the words in types of variables that refer to nothing, but for `&` and `*`."""
+    return _VALUES | {each.name for each in environment.enums} | {each.name for each in environment.compounds}
+
+
+def may_refer(type_text: str, values: frozenset[str]) -> bool:
+    """Returns whether a variable of the type may refer to what it starts from."""
+    words = re.findall(r"[A-Za-z_]\w*", type_text)
+    return not values.issuperset(words) or not {"&", "*"}.isdisjoint(type_text)
 
 
 class Changes:
@@ -40,6 +59,7 @@ class Changes:
         self.object_types: set[str] = set()
         self.value_types: set[str] = set()
         self._compounds = frozenset(compound.name for compound in environment.compounds)
+        self._values = value_types(environment)
         self._shared = shared_code_of(environment)
         self._inside = list(_passed_to_functions(self._shared.cpp, self._shared.reading))
         for mention in self._shared.cpp.mentions:
@@ -48,7 +68,7 @@ class Changes:
 
     def read(self, cpp: Cpp, copies: frozenset[str]) -> None:
         """Takes in a snippet that may change these copies of the state."""
-        passed_on = list(_passed_to_functions(cpp, self._shared.reading))
+        passed_on = [*_passed_to_functions(cpp, self._shared.reading), *_referred_to(cpp, self._values)]
         changed_by_lambda = _changed_by_lambdas(cpp, passed_on) | self._changed_by_shared_code(cpp)
         whole_copies = _whole_copies(cpp)
         for mention in cpp.mentions:
@@ -169,13 +189,34 @@ def drawing_defaults(environment: Environment) -> Iterator[str]:
                 yield variable.name
 
 
+def _referred_to(cpp: Cpp, values: frozenset[str]) -> Iterator[range]:
+    """What variables may refer to, and the lambdas that give references."""
+    enums = (each.name for each in cpp.declarations if each.kind is DeclarationKind.ENUM)
+    types = values.union(enums)
+    names = set()
+    for declaration in cpp.declarations:
+        code = cpp.code[declaration.initial.start : declaration.initial.end] if declaration.initial else ""
+        is_lambda = code.startswith("[") and _GIVES_REFERENCE.search(code) is not None
+        if not _ONLY_READS.match(declaration.type) and (may_refer(declaration.type, types) or is_lambda):
+            names.add(declaration.name)
+            yield from _ranges([declaration.initial])
+    for mention in cpp.mentions:
+        yield from _ranges([mention.assigned] if mention.path[0] in names else [])
+    for call in cpp.calls:
+        yield from _ranges(call.arguments if names.intersection(call.name[:1]) else ())
+
+
+def _ranges(extents: Iterable[Extent | None]) -> Iterator[range]:
+    return (range(extent.start, extent.end) for extent in extents if extent is not None)
+
+
 def _passed_to_functions(cpp: Cpp, reading: frozenset[str]) -> Iterator[range]:
     """The arguments of calls to functions that may take them by reference; `reading` are some that do not."""
     own = {declaration.name for declaration in cpp.declarations}
     for call in cpp.calls:
         is_function = len(call.name) == 1 or call.name[:1] == ("std",)
         if is_function and call.name[-1] not in READING_FUNCTIONS | (reading - own):
-            yield from (range(argument.start, argument.end) for argument in call.arguments)
+            yield from _ranges(call.arguments)
 
 
 def _changed_by_lambdas(cpp: Cpp, passed_on: list[range]) -> dict[int, set[str]]:
@@ -183,7 +224,9 @@ def _changed_by_lambdas(cpp: Cpp, passed_on: list[range]) -> dict[int, set[str]]
     lambdas = {
         declaration.name: declaration.initial
         for declaration in cpp.declarations
-        if declaration.initial is not None and cpp.code[declaration.initial.start] == "["
+        if declaration.initial is not None
+        and cpp.code[declaration.initial.start] == "["
+        and not _GIVES_REFERENCE.search(cpp.code, declaration.initial.start, declaration.initial.end)
     }
     found = {}
     for call in cpp.calls:
