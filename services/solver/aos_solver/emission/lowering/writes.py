@@ -190,7 +190,7 @@ def drawing_defaults(environment: Environment) -> Iterator[str]:
 
 
 def _referred_to(cpp: Cpp, values: frozenset[str]) -> Iterator[range]:
-    """What variables may refer to, and the lambdas that give references."""
+    """Yields what variables may refer to, and the lambdas that give references."""
     enums = (each.name for each in cpp.declarations if each.kind is DeclarationKind.ENUM)
     types = values.union(enums)
     names = set()
