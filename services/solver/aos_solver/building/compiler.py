@@ -76,6 +76,12 @@ class Compiler(msgspec.Struct, frozen=True):
         return ("-O1", *more, *self.without_collections) if self.family == "gcc" else ()
 
     @property
+    def largest_source(self) -> tuple[str, ...]:
+        """The options for the part that holds states: without passes that take a tenth of its time."""
+        less = ("-fno-tree-pta", "-fno-tree-dominator-opts", "-fno-ipa-modref", "-fno-tree-dse")
+        return (*self.large_source, *less, "-fira-region=one") if self.family == "gcc" else ()
+
+    @property
     def without_collections(self) -> tuple[str, ...]:
         """The option with which gcc collects garbage in very large sources only."""
         return ("--param=ggc-min-heapsize=600000",) if self.family == "gcc" else ()

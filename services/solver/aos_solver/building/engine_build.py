@@ -34,7 +34,6 @@ NUMBERS = "numbers"
 """The part that knows models as numbers only: mostly loops."""
 FUNCTIONS = "support"
 """The part with the functions that models call."""
-_NUMBERS_OPTION = "-O3"
 
 _PART_BYTES = 1500 << 20
 """The longest part takes 1.3 GB of memory."""
@@ -65,10 +64,10 @@ async def build_engine(
         on_progress(f"compiling the engine with {compiler.version}, once for all models")
         if compiler.family == "zig":
             on_progress("ziglang's first build prepares its C++ library as well; allow some minutes")
-        large = compiler.large_source
-        commands = [_part(compiler, ENGINE, f"-DAOS_STATE_BYTES={state_bytes}", *large)]
+        commands = [_part(compiler, ENGINE, f"-DAOS_STATE_BYTES={state_bytes}", *compiler.largest_source)]
         if state_bytes == STATE_BYTES[0]:
-            commands += [_part(compiler, NUMBERS, _NUMBERS_OPTION), _part(compiler, FUNCTIONS, *large)]
+            commands.append(_part(compiler, NUMBERS, *compiler.without_collections))
+            commands.append(_part(compiler, FUNCTIONS, *compiler.large_source))
             (staging / SUPPORT).parent.mkdir(parents=True)
             commands.append(compiler.precompilation(SUPPORT, str(SOURCES), ".", *QUICK))
         deadline_s = engine_deadline_s(compiler)
@@ -114,8 +113,7 @@ def engine_name(compiler: Compiler, state_bytes: int) -> str:
     """The name of the engine's entry in a cache."""
     # Clang looks for what was precompiled by the path of the sources.
     place = [] if compiler.family == "gcc" else [str(SOURCES)]
-    options = [_NUMBERS_OPTION, *compiler.large_source]
-    return f"engine-{state_bytes}-{digest_of([circumstances(compiler), *options, *place])}"
+    return f"engine-{state_bytes}-{digest_of([circumstances(compiler), *compiler.largest_source, *place])}"
 
 
 def engine_seconds(entry: Path | None) -> float:

@@ -136,9 +136,10 @@ std::optional<PolicyValue> OnlineSarsop::best_policy_anew(std::size_t steps, std
 
 std::vector<ActionBounds> OnlineSarsop::action_bounds() {
   std::vector<ActionBounds> bounds = solver_->sarsop.action_bounds();
+  const double below = solver_->below(), above = solver_->above();
   for (ActionBounds& action : bounds) {
-    action.lower -= solver_->below();
-    action.upper += solver_->above();
+    action.lower -= below;
+    action.upper += above;
   }
   return bounds;
 }

@@ -60,7 +60,7 @@ void CellTables::fit(const std::vector<std::uint16_t>& rows, const std::vector<d
 
 // Fits the table's weights to what all other tables leave. The weights are shrunk by the ratio of the noise
 // within cells to the differences between cells.
-void CellTables::fit(const Table& table) {
+[[gnu::optimize("O3")]] void CellTables::fit(const Table& table) {
   for (std::size_t half = 0; half < 2; ++half) {
     float* const weights = &weights_[half][table.first];
     sums_.assign(table.size, {});
@@ -154,7 +154,7 @@ void CellTables::take_columns(std::size_t stride) {
 
 // What tables explain of the examples, less what chance would. Their sums do not wait for one another. The last tables may be
 // fewer.
-std::array<double, CellTables::side_by_side> CellTables::gains(const Candidate* tables, std::size_t count, double variance) {
+[[gnu::optimize("O3")]] std::array<double, CellTables::side_by_side> CellTables::gains(const Candidate* tables, std::size_t count, double variance) {
   std::array<Candidate, side_by_side> all;
   std::array<std::size_t, side_by_side + 1> first{};
   for (std::size_t k = 0; k < side_by_side; ++k) {

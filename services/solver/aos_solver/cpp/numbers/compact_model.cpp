@@ -60,7 +60,7 @@ std::vector<float> CompactModel::values(double discount, int horizon) const {
   return {};
 }
 
-float CompactModel::best_at(std::size_t first, std::size_t last, float discount, const std::vector<float>& values) const {
+[[gnu::optimize("O3")]] float CompactModel::best_at(std::size_t first, std::size_t last, float discount, const std::vector<float>& values) const {
   float best = -std::numeric_limits<float>::infinity();
   for (std::size_t at = first; at < last; at += length_at(at)) {
     float later = 0;

@@ -64,7 +64,7 @@ class Backups {
 
  private:
   // The branch's value from the values of its successors and of the rest, moved outwards by the rounding.
-  double backed_up(const Branch& branch, double rest, double direction, auto value_of) {
+  [[gnu::optimize("O3")]] double backed_up(const Branch& branch, double rest, double direction, auto value_of) {
     double sum = rest;
     double size = std::abs(branch.reward) + std::abs(rest);
     for (const Successor& successor : branch.successors) {

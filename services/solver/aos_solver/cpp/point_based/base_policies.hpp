@@ -27,7 +27,7 @@ class BasePolicies {
   // were played when `is_over()` came. `is_late()` also breaks off the last one. `uniform()` draws. Where it `decides_anew`, each
   // decision has the whole horizon to go. Else it must return more than the lower bound by a standard error, or by anything if
   // it was found last.
-  std::optional<PolicyValue> best(const Node& node, std::size_t steps, bool decides_anew, Asked is_over, Asked is_late, Uniform uniform) {
+  [[gnu::optimize("O3")]] std::optional<PolicyValue> best(const Node& node, std::size_t steps, bool decides_anew, Asked is_over, Asked is_late, Uniform uniform) {
     decides_anew_ = decides_anew;
     const double worth = std::max(node.upper - node.lower, 0.0);  // of knowing all
     std::vector<Candidate> candidates;
@@ -95,7 +95,7 @@ class BasePolicies {
 
   // Plays a mission, which counts if it ends before `is_late()`. What comes after its steps counts as the lower bound there, where
   // the search has no horizon.
-  void play(const Node& start, Candidate& candidate, std::size_t steps, Asked is_late, Uniform uniform) {
+  [[gnu::optimize("O3")]] void play(const Node& start, Candidate& candidate, std::size_t steps, Asked is_late, Uniform uniform) {
     Belief belief = start.belief;
     std::uint32_t region = start.region;
     std::uint32_t action = candidate.first;
@@ -123,7 +123,7 @@ class BasePolicies {
   }
 
   // The observation at `place` in the distribution of all; null if the mission ends. The posterior has its prediction.
-  const ObservationBranch* observation(const Belief& belief, const Move& move, double place) {
+  [[gnu::optimize("O3")]] const ObservationBranch* observation(const Belief& belief, const Move& move, double place) {
     graph_.count_work(posterior_.predict(belief, move));
     for (const ObservationBranch& branch : move.observation_branches) {
       graph_.count_work(branch.successors.size());
@@ -133,7 +133,7 @@ class BasePolicies {
   }
 
   // The action that a policy takes; any one if `is_late()` comes first.
-  std::uint32_t choice(const Belief& belief, std::uint32_t region, std::uint32_t left, const Candidate& candidate, Asked is_late) {
+  [[gnu::optimize("O3")]] std::uint32_t choice(const Belief& belief, std::uint32_t region, std::uint32_t left, const Candidate& candidate, Asked is_late) {
     const std::vector<double> informed = graph_.informed_values(region, left, belief);
     graph_.count_work(model_.actions * belief.size());
     std::uint32_t best = 0;
@@ -151,7 +151,7 @@ class BasePolicies {
   }
 
   // The mutual information between the state and what is observed after an action, in nats.
-  double information(const Belief& belief, std::uint32_t region, std::uint32_t action) {
+  [[gnu::optimize("O3")]] double information(const Belief& belief, std::uint32_t region, std::uint32_t action) {
     const Move& move = regions_.all[region].moves[action];
     if (move.observation_branches.size() < 2 || belief.size() < 2) return 0;
     graph_.count_work(posterior_.predict(belief, move));
@@ -164,7 +164,7 @@ class BasePolicies {
   }
 
   // By state of the region: the entropy of what is observed after an action.
-  const std::vector<double>& doubts(std::uint32_t region, std::uint32_t action) {
+  [[gnu::optimize("O3")]] const std::vector<double>& doubts(std::uint32_t region, std::uint32_t action) {
     std::vector<double>& known = doubts_[region * model_.actions + action];
     if (!known.empty()) return known;
     const Move& move = regions_.all[region].moves[action];

@@ -162,7 +162,7 @@ class BeliefGraph {
 
   // An upper bound of each action's value: the value if the robot knew more.
   std::vector<double> informed_values(const Node& node) const { return informed_values(node.region, node.left, node.belief); }
-  std::vector<double> informed_values(std::uint32_t region, std::uint32_t left, const Belief& belief) const {
+  [[gnu::optimize("O3")]] std::vector<double> informed_values(std::uint32_t region, std::uint32_t left, const Belief& belief) const {
     const std::vector<std::uint32_t>& states = regions_.all[region].states;
     std::vector<double> sums(model_.actions, rounding_ * sizes_[left]);
     for (std::size_t i = 0; i < belief.size(); ++i) {
@@ -184,7 +184,7 @@ class BeliefGraph {
     return best;
   }
 
-  void refresh_lower(Node& node) {
+  [[gnu::optimize("O3")]] void refresh_lower(Node& node) {
     work_ += per_look;
     const LowerBound& bound = lower_[node.region];
     if (bound[node.vector].is_gone()) node.seen_vectors = 0;
@@ -212,7 +212,7 @@ class BeliefGraph {
     node.lower = std::max(node.lower, best);
   }
 
-  void refresh_upper(Node& node) {
+  [[gnu::optimize("O3")]] void refresh_upper(Node& node) {
     UpperBound& bound = upper_of(node.region, node.left);
     work_ += per_look;
     if (bound.changes() != node.seen_changes) work_ += per_spread * node.belief.size();
@@ -298,7 +298,7 @@ class BeliefGraph {
     }
   }
 
-  void add_successors(const Belief& belief, std::uint32_t left, const Move& move, Branch& branch) {
+  [[gnu::optimize("O3")]] void add_successors(const Belief& belief, std::uint32_t left, const Move& move, Branch& branch) {
     work_ += posterior_.predict(belief, move) + move.targets / per_cleared;
     for (std::uint32_t number = 0; number < move.observation_branches.size(); ++number) {
       const ObservationBranch& observation_branch = move.observation_branches[number];

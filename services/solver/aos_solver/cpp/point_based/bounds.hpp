@@ -29,7 +29,7 @@ struct AlphaVector {
 };
 
 // The sum of probabilities times values. A processor can add up the eight partial sums side by side.
-double weighted_sum(const std::vector<double>& probabilities, auto&& value_of) {
+[[gnu::optimize("O3")]] double weighted_sum(const std::vector<double>& probabilities, auto&& value_of) {
   constexpr std::size_t width = 8;
   double sums[width]{};
   const std::size_t whole = probabilities.size() / width * width;
@@ -128,7 +128,7 @@ class UpperBound {
     changes_.push_back(number);
   }
 
-  double of(const Belief& belief, double corner) {
+  [[gnu::optimize("O3")]] double of(const Belief& belief, double corner) {
     double drop = 0;
     spread(belief);
     for (const Point& point : points_) lower(drop, point, belief.size());
@@ -136,7 +136,7 @@ class UpperBound {
     return corner + drop + error_ - rounding_ * drop;
   }
   // Lowers `value` by what has changed after the first `seen` changes.
-  double of(const Belief& belief, double corner, double value, std::uint32_t seen) {
+  [[gnu::optimize("O3")]] double of(const Belief& belief, double corner, double value, std::uint32_t seen) {
     if (seen == changes_.size()) return value;
     if (changes_.size() - seen > points_.size()) return std::min(value, of(belief, corner));
     double drop = std::min(0.0, value - corner);

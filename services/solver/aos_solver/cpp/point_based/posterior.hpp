@@ -13,7 +13,7 @@ class Posterior {
   void reserve(std::size_t states) { dense_.assign(states, 0.0); }
 
   // Predicts what an action leads to from a belief. Returns the number of multiplications.
-  std::uint64_t predict(const Belief& belief, const Move& move) {
+  [[gnu::optimize("O3")]] std::uint64_t predict(const Belief& belief, const Move& move) {
     std::uint64_t work = 0;
     predicted_.assign(move.targets, 0.0);
     for (std::size_t i = 0; i < belief.size(); ++i) {
@@ -24,7 +24,7 @@ class Posterior {
     return work;
   }
 
-  double probability_of(const ObservationBranch& branch) const {
+  [[gnu::optimize("O3")]] double probability_of(const ObservationBranch& branch) const {
     double total = 0;
     for (const ObservationBranch::Successor& successor : branch.successors) {
       total += predicted_[successor.target] * successor.probability;
@@ -33,7 +33,7 @@ class Posterior {
   }
 
   // Computes the weights after an observation. Returns their sum, which is the observation's probability.
-  double observe(const ObservationBranch& branch) {
+  [[gnu::optimize("O3")]] double observe(const ObservationBranch& branch) {
     belief_.states.clear();
     belief_.probabilities.clear();
     double total = 0;
