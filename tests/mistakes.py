@@ -79,7 +79,9 @@ def _bundle(name: str) -> dict[str, bytes]:
         ROOT / "deploy/bundles" / name,
         ROOT / "tests/data/bundles" / name,
     )
-    return read_bundle_files(next(folder for folder in folders if folder.is_dir()))[0]
+    files = read_bundle_files(next(folder for folder in folders if folder.is_dir()))[0]
+    # The rough pick stands for the one of the documents that it adds to.
+    return _bundle("armadillo-finer") | files if name == "armadillo-rough" else files
 
 
 def main() -> int:
