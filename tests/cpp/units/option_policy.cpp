@@ -89,6 +89,36 @@ TEST("A robot looks elsewhere before it looks for ever where it knows that nothi
   EXPECT(policy.estimates()[go].q > policy.estimates()[look].q);
 }
 
+// A thing is in one of 48 places, of which a scan covers twelve. No scan makes any place worth a try. Another test tells for less what is of no use.
+TEST("A scan counts for the tests that it makes cheaper, and what is of no use counts nothing") {
+  constexpr std::uint32_t places = 48, scans = 4, of_no_use = scans, first_peek = scans + 1, first_take = first_peek + places;
+  Problem problem = units::world(2 * places + 1, first_take + places, 0.98);
+  problem.endings[2 * places] = 1;
+  problem.horizon = 60;
+  problem.sensings.push_back({{0, 0.9}, {1, 0.1}});
+  problem.sensings.push_back({{0, 0.1}, {1, 0.9}});
+  problem.starts.clear();
+  for (std::uint32_t state = 0; state < 2 * places; ++state) {
+    const std::uint32_t thing = state / 2;
+    problem.starts.push_back({state, 0.5 / places});
+    for (std::uint32_t scan = 0; scan < scans; ++scan) units::row(problem, state, scan) = {{1.0, state, thing % scans == scan ? 1u : 2u, -1}};
+    units::row(problem, state, of_no_use) = {{1.0, state, 1 + state % 2, -0.1}};
+    for (std::uint32_t place = 0; place < places; ++place) {
+      units::row(problem, state, first_peek + place) = {{1.0, state, place == thing ? 1u : 2u, -0.5}};
+      units::row(problem, state, first_take + place) = {{1.0, place == thing ? 2 * places : state, 0, place == thing ? 30.0 : -8.0}};
+    }
+  }
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const Belief belief = Belief::initial(random);
+  aos::OptionPolicy<TableModel> policy;
+  EXPECT(policy.prepare(belief, 1e6, 0, random).empty());
+  policy.search(belief, problem.horizon, random, {});
+  const auto& estimates = policy.estimates();
+  const auto best = std::ranges::max_element(estimates, {}, [](const aos::ActionEstimate& estimate) { return estimate.n > 0 ? estimate.q : -1e9; });
+  EXPECT(best - estimates.begin() < scans);
+}
+
 // Two jobs, each done by its action, which earns 20; the mission ends when both are done. A state has a bit for each.
 TEST("A reward that an action has earned does not count again where the mission may end with it") {
   Problem problem = units::world(4, 2, 0.95);

@@ -77,6 +77,8 @@ class OptionGains {
     support_.assign(1, {state, 1.0});
     return best_of_support(before);
   }
+  // The option that `best_in` has found best, if it is only one; none else.
+  std::size_t only_one() const { return chosen_.size() == 1 ? chosen_.front() : none; }
   // The weights of the states after an option, as far as the mission goes on.
   StateWeights after(std::size_t option, StateWeights weights) const {
     for (std::size_t k = 0; k < states_; ++k) weights[k] *= goes_on_[option * states_ + k];
@@ -152,6 +154,7 @@ class OptionGains {
       }
       if (best == none) break;
       used_[best] = true;
+      chosen_.push_back(best);
       sum += discount * most;
       discount *= discounts_[best];
       for (Weighted& weighted : support_) weighted.weight *= goes_on_[best * states_ + weighted.state];

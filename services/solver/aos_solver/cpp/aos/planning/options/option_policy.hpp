@@ -25,6 +25,7 @@
 #include "aos/planning/options/option_regret.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/option_tests.hpp"
+#include "aos/planning/options/option_twins.hpp"
 #include "aos/planning/options/option_values.hpp"
 #include "aos/planning/options/own_changes.hpp"
 #include "aos/planning/options/plain_plans.hpp"
@@ -41,6 +42,7 @@ class OptionPolicy {
   // Draws states and finds options within so many steps of the model, and so many seconds if these are above 0. Returns why this policy cannot decide; empty if it can.
   std::string prepare(const Belief<Model>& belief, double affordable, double seconds, Sampler random) {
     taken_ = 0;
+    twins_.forget();
     if (belief.probability_of(Ending::running) <= 0) return "the mission is over";
     if (!obstacle_.empty()) return obstacle_;
     const ForgottenTexts forgotten;
@@ -79,7 +81,10 @@ class OptionPolicy {
     values_.begin(belief_, horizon, tried_options + tried_moves_.size(), left, random);
     const std::vector<std::size_t> likely = likely_options(barred);
     regret_.watch(likely);
-    if (regret_.now() > matters * std::abs(regret_.value_seen())) add_observations(likely, barred, left, random);
+    if (regret_.now() > matters * std::abs(regret_.value_seen())) {
+      if (switches::twins && !library_.counts() && changes_.leaves_tests()) twins_.find(belief, of_twins * left, left, random);
+      add_observations(likely, barred, left, random);
+    }
     const std::size_t observing = candidates_.size();
     for (std::size_t i = 0; i < likely.size(); ++i) add_option(likely[i], gained_after(likely[i], i, observing, left, random));
     note_way(likely, observing);
@@ -146,6 +151,7 @@ class OptionPolicy {
   // Of the time, if the budget is one:
   static constexpr double of_gains = 0.5;  // until options are measured
   static constexpr double of_all = 0.95;   // to end what is at hand takes the rest
+  static constexpr double of_twins = 0.1;      // of the steps that are left
   static constexpr double enough_found = 0.5;  // of the belief
   static constexpr double matters = 1e-6;       // of the value, as a regret
   static constexpr std::size_t tried_options = 8;
@@ -233,6 +239,7 @@ class OptionPolicy {
     tests_.observe_all(barred, left, random);
     const std::vector<View> views = library_.counts() ? priced_views(barred, left, random) : std::vector<View>{};
     tests_.add_to(candidates_, left, random);
+    if (twins_.are_known()) regret_.set_price(std::numeric_limits<double>::infinity(), true);
     moves_.add_to(candidates_, tried_moves_, left, random);
     for (const auto& view : views) moves_.add_view(candidates_, view, left, random);
     for (const int move : tried_moves_) {
@@ -243,6 +250,7 @@ class OptionPolicy {
         moves_.add_view(candidates_, moves_.best_view(library_.options()[option].front(), barred, left, random), left, random);
       }
     }
+    if (twins_.are_known()) regret_.set_price(tests_.price_of_nat(regret_.value_seen(), true), true);
   }
 
   // The moves with what can be observed after them. The state can be found out at the price of a nat where that is cheapest.
@@ -255,7 +263,7 @@ class OptionPolicy {
       const double paid = (1 - Model::discount * Model::discount) * regret_.value_seen() - views.back().reward;
       if (views.back().test >= 0) price = std::min(price, std::max(paid, 0.0) / views.back().information);
     }
-    regret_.set_price(price);
+    regret_.set_price(price, false);
     return views;
   }
 
@@ -311,7 +319,8 @@ class OptionPolicy {
   SampledBelief<Model> belief_;
   OptionRegret<Model> regret_{belief_, gains_};
   OwnChanges<Model> changes_;
-  OptionTests<Model> tests_{belief_, regret_, changes_, clock_};
+  OptionTwins<Model> twins_{belief_, regret_, library_};
+  OptionTests<Model> tests_{belief_, regret_, changes_, twins_, clock_};
   OptionValues<Model> values_{library_, clock_};
   OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
   OptionDetours<Model> detours_{belief_, gains_, clock_};

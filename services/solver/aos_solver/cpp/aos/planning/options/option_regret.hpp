@@ -38,18 +38,25 @@ class OptionRegret {
   // Takes the belief and the gains as they are now.
   void begin() {
     seen_.clear();
+    only_ways_.clear();
     likely_.clear();
     price_ = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < belief_.size(); ++k) seen_.push_back(gains_.best_in(k));
+    for (std::size_t k = 0; k < belief_.size(); ++k) {
+      seen_.push_back(gains_.best_in(k));
+      only_ways_.push_back(gains_.only_one());
+    }
     value_seen_ = value_seen(belief_.weights());
     regret_ = after(belief_.weights());
   }
-  // Lets a robot find out the state at this price for each nat, so that it never loses more by not knowing it. What is told by
-  // tests together counts then, where each alone leaves the best options what they are.
-  void set_price(double price) {
+  // Lets a robot find out the state at this price for each nat, or only which way is best, so that it never loses more by not knowing it. What is
+  // told by tests together counts then, where each alone leaves the best options what they are.
+  void set_price(double price, bool of_ways) {
     price_ = price;
+    prices_ways_ = of_ways;
     regret_ = after(belief_.weights());
   }
+  // By state: the option that is best there, where no other one follows it.
+  const std::vector<std::size_t>& only_ways() const { return only_ways_; }
   // The options that may be taken next.
   void watch(std::vector<std::size_t> likely) { likely_ = std::move(likely); }
   double value_seen(std::size_t state) const { return seen_[state]; }
@@ -68,7 +75,7 @@ class OptionRegret {
   }
   double after(const StateWeights& weights) const {
     const double blind = std::max(value_seen(weights) - gains_.best(weights), 0.0);
-    return blind > 0 && std::isfinite(price_) ? std::min(blind, price_ * entropy_of(weights)) : blind;
+    return blind > 0 && std::isfinite(price_) ? std::min(blind, price_ * entropy_of(prices_ways_ ? by_way(weights) : weights)) : blind;
   }
 
   // The mean regret after an observation that is made so many times, from the weights `before`, and what it tells of each likely option.
@@ -94,6 +101,11 @@ class OptionRegret {
   }
 
  private:
+  StateWeights by_way(const StateWeights& weights) const {
+    StateWeights sums(gains_.size());
+    for (std::size_t k = 0; k < weights.size(); ++k) sums[only_ways_[k]] += weights[k];
+    return sums;
+  }
   // How many steps of the model take as long as to find the best options.
   double steps_of_best() const {
     constexpr double of_gain = 0.02;
@@ -103,9 +115,11 @@ class OptionRegret {
   const OptionGains<Model>& gains_;
   std::vector<std::size_t> likely_;
   std::vector<double> seen_;  // what the states are worth if they are seen
+  std::vector<std::size_t> only_ways_;
   double value_seen_ = 0;
   double regret_ = 0;
   double price_ = std::numeric_limits<double>::infinity();  // of a nat
+  bool prices_ways_ = false;
 };
 
 }

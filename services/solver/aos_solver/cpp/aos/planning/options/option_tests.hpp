@@ -7,6 +7,7 @@
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_regret.hpp"
+#include "aos/planning/options/option_twins.hpp"
 #include "aos/planning/options/own_changes.hpp"
 #include "aos/planning/options/repeated_observation.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
@@ -27,8 +28,9 @@ class OptionTests {
     return of_likelihood * OptionRegret<Model>::observations * states;
   }
 
-  OptionTests(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret, const OwnChanges<Model>& changes, DecisionClock& clock)
-      : belief_(belief), regret_(regret), changes_(changes), clock_(clock) {}
+  OptionTests(const SampledBelief<Model>& belief, OptionRegret<Model>& regret, const OwnChanges<Model>& changes, OptionTwins<Model>& twins,
+              DecisionClock& clock)
+      : belief_(belief), regret_(regret), changes_(changes), twins_(twins), clock_(clock) {}
 
   const DecisionClock& clock() const { return clock_; }
   // Begins a mission.
@@ -61,7 +63,9 @@ class OptionTests {
       const double reward = take(a, steps, random);
       steps -= steps_of_weighing(belief_.size());
       informations_[a] = information(belief_.weights(), reports_[a], OptionRegret<Model>::observations, random);
-      if (informations_[a] > least_information) tests_.push_back({static_cast<int>(a), reward, informations_[a]});
+      if (informations_[a] <= least_information) continue;
+      const bool is_priced = twins_.are_known() && twins_.tells_of_options(static_cast<int>(a), reports_[a], steps, random);
+      tests_.push_back({static_cast<int>(a), reward, informations_[a], is_priced});
     }
     sort_stably(tests_, [](const Test& one, const Test& other) { return one.information > other.information; });
     return is_whole;
@@ -69,9 +73,9 @@ class OptionTests {
 
   bool empty() const { return tests_.empty(); }
   // What a nat costs, with the time that it takes, by the test where it is cheapest; infinite without a test.
-  double price_of_nat(double value_seen) const {
+  double price_of_nat(double value_seen, bool of_options = false) const {
     double price = std::numeric_limits<double>::infinity();
-    for (const Test& test : tests_) price = std::min(price, std::max((1 - Model::discount) * value_seen - test.reward, 0.0) / test.information);
+    for (const Test& test : tests_) if (test.is_priced || !of_options) price = std::min(price, std::max((1 - Model::discount) * value_seen - test.reward, 0.0) / test.information);
     return price;
   }
   // The actions that change the state, those that are barred left out.
@@ -81,12 +85,16 @@ class OptionTests {
   const std::vector<StepReports>& reports_of(int action) const { return reports_[action]; }
   double information_of(int action) const { return informations_[action]; }
 
-  // Adds the tests of each skill that tell most, made once or several times in a row, the latter while there are steps.
-  void add_to(std::vector<OptionCandidate>& candidates, double& steps, Sampler& random) const {
+  // Adds the tests of each skill that tell most, made once or several times in a row, the latter while there are steps. The regret
+  // that is left has a price after those that tell of nothing but the best option.
+  void add_to(std::vector<OptionCandidate>& candidates, double& steps, Sampler& random) {
+    const double price = twins_.are_known() ? price_of_nat(regret_.value_seen(), true) : std::numeric_limits<double>::infinity();
     const std::vector<Test> tests = most_telling();
     for (int repeats = 1; repeats <= most_repeats; repeats *= 2) {
       for (const Test& test : tests) {
-        if (repeats == 1 || (steps > 0 && !clock_.is_over())) add(candidates, test, repeats, steps, random);
+        if (repeats > 1 && (steps <= 0 || clock_.is_over())) continue;
+        if (twins_.are_known()) regret_.set_price(test.is_priced ? price : std::numeric_limits<double>::infinity(), true);
+        add(candidates, test, repeats, steps, random);
       }
     }
   }
@@ -98,6 +106,7 @@ class OptionTests {
     int action;
     double reward;
     double information;
+    bool is_priced;  // since it tells of nothing but the best option
   };
 
   std::vector<Test> most_telling() const {
@@ -134,8 +143,9 @@ class OptionTests {
   }
 
   const SampledBelief<Model>& belief_;
-  const OptionRegret<Model>& regret_;
+  OptionRegret<Model>& regret_;
   const OwnChanges<Model>& changes_;
+  OptionTwins<Model>& twins_;
   DecisionClock& clock_;
   ReportedStep<Model> step_;
   std::vector<std::vector<StepReports>> reports_;  // [action][state]

@@ -59,6 +59,8 @@ class OwnChanges {
 
   // Whether the action changes any of the states, or ends the mission.
   bool is_move(int action) const { return moves_[action]; }
+  // Whether an action is no move.
+  bool leaves_tests() const { return std::ranges::count(moves_, false) > 0; }
   // Whether the next step earns something whatever the robot does.
   bool earns_anyway() const { return earns_anyway_; }
   // Whether a variable changes by itself, and no action changes it.
