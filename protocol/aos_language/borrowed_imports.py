@@ -39,10 +39,7 @@ def _lent_names(mappings: Iterable[AbstractionMapping]) -> dict[str, Import]:
     """Returns each name that an import of a mapping brings, with that import of this name alone."""
     lent: dict[str, Import] = {}
     for mapping in mappings:
-        for imported in (
-            *mapping.activation.imports,
-            *(each for variable in mapping.local_variables for each in variable.imports),
-        ):
+        for imported in mapping.imports:
             for text in imported.names:
                 one = msgspec.structs.replace(imported, names=(text,))
                 lent.setdefault(imported_name(text), one)

@@ -9,8 +9,11 @@ import msgspec
 
 from aos_protocol.documents import AbstractionMapping, Environment, StateVariable
 
+OF_SKILL = ("__skill_status", "__skill_error")
+"""The names by which rules read how a skill has failed."""
+
 RESERVED_LOCAL_NAMES = frozenset({
-    "CONSTANTS", "RESPONSE", "TOPICS", "__input", "__skill_error", "__skill_status", "local_variables",
+    "CONSTANTS", "RESPONSE", "TOPICS", "__input", *OF_SKILL, "local_variables",
     "low_level_type", "observe", "parameters", "request", "stand_in", "stop_when",
 })  # fmt: skip
 """No local variable can have these names: the generated module uses them, or is given them."""

@@ -14,7 +14,7 @@ from aos_language.check.rule_gaps import check_rule_gaps
 from aos_language.check.scope import Scope
 from aos_language.check.taken_away import check_taken_away
 from aos_language.findings import Findings
-from aos_language.local_types import ELEMENTS, local_type
+from aos_language.local_types import ELEMENTS, OF_SKILL, local_type
 from aos_language.python_syntax import own_scope, place_in, tree_of
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import (
@@ -204,7 +204,7 @@ def _check_order(rules: tuple[ResponseRule, ...], findings: Findings) -> None:
         truth = _constant_truth(rule.condition)
         key = rule.condition.code if rule.condition is not None else "True"
         span = _condition_span(rule)
-        if always is not None and any(name in key for name in python_names.OF_SKILL):
+        if always is not None and any(name in key for name in OF_SKILL):
             continue
         if always is not None:
             hint = f"The rule on line {_condition_span(always).line} always holds"

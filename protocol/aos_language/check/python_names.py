@@ -20,6 +20,7 @@ import msgspec
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.check.shared_calls import check_python_call
 from aos_language.findings import Findings
+from aos_language.local_types import OF_SKILL
 from aos_language.python_syntax import module_of, names_bound_by, own_scope, place_in, place_of_byte
 from aos_protocol.diagnostics import Mend, Severity
 from aos_protocol.documents import (
@@ -33,8 +34,6 @@ from aos_protocol.documents import (
 )
 from aos_protocol.spelling import quoted
 
-OF_SKILL = frozenset({"__skill_status", "__skill_error"})
-"""The names by which rules read how a skill has failed."""
 _OF_MESSAGES = (".msg", ".srv", ".action")
 _INPUT, _PARAMETERS = "__input", "parameters"
 _LOOKED_INTO = frozenset({"math", "json", "random", "re", "statistics", "time"})
@@ -69,15 +68,13 @@ class PythonNames(msgspec.Struct, frozen=True):
     @classmethod
     def of(cls, mapping: AbstractionMapping, model: SkillModel | None, scope: Scope) -> PythonNames:
         """The names of a mapping's own expressions."""
-        imports = [*mapping.activation.imports]
-        for variable in mapping.local_variables:
-            imports += variable.imports
+        imports = mapping.imports
         imported = _imported_names(imports)
         local_names = tuple(variable.name for variable in mapping.local_variables)
         known = _BUILT_IN_NAMES.union(imported or (), local_names, _names_of_constants(scope.low_level))
         known |= _names_of_shared(scope.shared_mapping_code)
         parameters = tuple(parameter.name for parameter in model.parameters) if model is not None else ()
-        of_end = frozenset() if mapping.monitor else OF_SKILL
+        of_end = frozenset(() if mapping.monitor else OF_SKILL)
         messages = _imported_names(item for item in imports if item.module.endswith(_OF_MESSAGES)) or ()
         return cls(
             known,

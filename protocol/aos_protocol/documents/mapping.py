@@ -129,3 +129,8 @@ class AbstractionMapping(msgspec.Struct, frozen=True):
     is_derived: bool = False
     stop_when: Snippet | None = None
     monitor: str = ""
+
+    @property
+    def imports(self) -> tuple[Import, ...]:
+        """The imports of the activation and of all local variables."""
+        return self.activation.imports + tuple(one for each in self.local_variables for one in each.imports)

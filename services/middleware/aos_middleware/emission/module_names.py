@@ -3,7 +3,7 @@
 import ast
 import builtins
 import keyword
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import msgspec
 
@@ -109,7 +109,7 @@ class ModuleNames:
         }
         known.update(name for name, _ in self._low_level_names())
         star = ""
-        for imported in self._imports():
+        for imported in self._mapping.imports:
             names = self._import_names(imported)
             if names is None:
                 continue
@@ -131,11 +131,6 @@ class ModuleNames:
             ImportPart(name, (f"{name} = stand_in({literal(name)}, {literal(star)})",)) for name in called
         ]
         return list(whole.values()), list(parts.values()), by_star
-
-    def _imports(self) -> Iterable[Import]:
-        yield from self._mapping.activation.imports
-        for variable in self._snippets.variables.values():
-            yield from variable.imports
 
     def _import_names(self, imported: Import) -> list[str] | None:
         """The names an import brings, none for `*`; None if it is not one."""

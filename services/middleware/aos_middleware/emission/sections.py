@@ -7,13 +7,11 @@ from collections.abc import Iterable
 
 import msgspec
 
+from aos_language.local_types import OF_SKILL
 from aos_middleware.emission.generated_lines import literal, word
 from aos_middleware.emission.python_code import LineOrigin, PythonCode
 from aos_middleware.emission.read_snippets import ReadSnippets, function_name
 from aos_protocol.documents import AbstractionMapping, LocalSource, LocalVariable, ResponseRule
-
-_OF_SKILL = ("__skill_status", "__skill_error")
-"""The names by which rules read how a skill has failed."""
 
 _HAS_ENDED, _HAS_FAILED = (f"__skill_status {test} ('succeeded', 'stopped')" for test in ("in", "not in"))
 """Tests of whether the skill has failed, for rules without these names beside rules with them."""
@@ -156,7 +154,7 @@ class Sections:
             for rule in mapping.rules
         ]
         of_end = [
-            index for index, code in enumerate(conditions) if code and not code.reads.isdisjoint(_OF_SKILL)
+            index for index, code in enumerate(conditions) if code and not code.reads.isdisjoint(OF_SKILL)
         ]
         self.handles_failures = bool(of_end)
         last_of_end = max(of_end, default=len(conditions))
@@ -178,7 +176,7 @@ class Sections:
         has_assignments = any("__assign(" in line for line in lines)
         reads = ["__assign"] if has_assignments else []
         reads += self._snippets.read_by(codes)
-        reads += [name for name in _OF_SKILL if any(name in line for line in lines)]
+        reads += [name for name in OF_SKILL if any(name in line for line in lines)]
         summary = "The response: that of the first rule that holds."
         return Function("observe", ", ".join(reads), summary, tuple(lines))
 

@@ -1,10 +1,10 @@
 """The words of a project's mappings about its robot: the paths that they call, the topics that they listen
 to."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import NamedTuple
 
-from aos_protocol.documents import AbstractionMapping, Import, LocalSource, Project
+from aos_protocol.documents import Import, LocalSource, Project
 
 
 class Documented(NamedTuple):
@@ -21,7 +21,7 @@ def documented(project: Project) -> Documented:
     """
     paths: dict[str, str] = {}
     topics: dict[str, str] = {}
-    of_all = [one for skill in project.skills for one in _imports(skill.mapping) if "*" not in one.names]
+    of_all = [one for skill in project.skills for one in skill.mapping.imports if "*" not in one.names]
     for skill in project.skills:
         activation = skill.mapping.activation
         path = "/" + activation.path.strip("/")
@@ -33,12 +33,6 @@ def documented(project: Project) -> Documented:
                 topic = "/" + variable.topic.strip("/")
                 topics[topic] = topics.get(topic) or _full_type(variable.message_type, "msg", imports)
     return Documented(paths, topics)
-
-
-def _imports(mapping: AbstractionMapping) -> Iterator[Import]:
-    yield from mapping.activation.imports
-    for variable in mapping.local_variables:
-        yield from variable.imports
 
 
 def _full_type(name: str, kind: str, imports: Iterable[Import]) -> str:
