@@ -72,6 +72,7 @@ CODES: dict[str, str] = {
     "AOS147": "a precondition whose violation costs nothing, or earns something",
     "AOS148": "a state that cannot be drawn",
     "AOS149": "a comparison that is none, or does nothing",
+    "AOS150": "an initial state in which the mission is over",
     "AOS201": "the model's C++ does not compile",
     "AOS202": "the compiler hit a limit",
     "AOS203": "no C++ compiler",

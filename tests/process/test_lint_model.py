@@ -215,6 +215,18 @@ def test_a_goal_and_a_precondition_that_nothing_leads_to_are_told_with_the_exten
     assert found == {"AOS132": ("warning", "hall.ef:10", extent), "AOS131": ("warning", "open.sd:4", extent)}
 
 
+def test_initial_states_in_which_the_mission_is_over_are_told(hall: Callable[..., Path]):
+    folder = hall("state__.place = (state.place + 1) % 5;", goal="0")
+    assert linted(folder)["AOS150"][:2] == ("warning", "hall.ef:10")
+    plan = aos("plan", folder, "--time", "0.1")
+    assert (plan.exit_code, plan.exception.code) == (1, "AOS302")
+    environment = folder / "hall.ef"
+    drawn = "state.place = AOS.Bernoulli(0.25) ? 0 : 1;"
+    environment.write_text(environment.read_text().replace("state.place = 0;", drawn))
+    assert linted(folder)["AOS150"][:2] == ("remark", "hall.ef:10")
+    assert "before its first step: goal with probability 0.250" in aos("plan", folder, "--exact").stderr
+
+
 def test_where_the_search_does_not_see_all_it_remarks_a_missing_goal_only(hall: Callable[..., Path]):
     found = linted(hall("state__.place = state.place + 1;", goal="-1", door="-1"))
     assert found.keys() == {"AOS132"}

@@ -3,6 +3,7 @@ what the actions can do."""
 
 import msgspec
 
+from aos_deploy.bundles.ended_starts import ended_start_findings
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Environment, Project
@@ -30,7 +31,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
     remark with the search's extent if that is at least the horizon, and nothing is said of preconditions.
     Loops that never end there are warnings, too. Nothing more is said where the initial belief cannot be
     enumerated. Where not all is looked at, random actions are tried as well. A fault of model code on the way
-    is an error at its place, and a look that took too long a remark.
+    is an error at its place, and a look that took too long a remark. Initial states that have ended are told.
     """
     extent = "Looked at no state"
 
@@ -42,6 +43,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
         async with await Engine.start(built, seed=1) as engine:
             engine.on_progress = tell
             await engine.tell_progress(0)
+            ended = ended_start_findings(project.environment, await engine.summary())
             reach = await engine.reach(_TIME_S, MAX_CPU_S)
             extent = _extent(reach)
             if not reach.is_whole:
@@ -56,7 +58,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
         cheaper = f"Make steps cheaper: a search makes many thousand of them. {extent}"
         return tuple(_reached(one, "" if is_fault else cheaper) for one in error.diagnostics)
     if reach.states == 0:
-        return endless
+        return (*ended, *endless)
     findings = Findings()
     is_whole = not reach.limit
     goal = _goal_span(project.environment)
@@ -71,7 +73,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
         if unmet and skill.model.precondition:
             message = f"the precondition of {_named(unmet, len(actions), skill.name)} is never met"
             findings.warning("AOS131", message, skill.model.precondition[0].span, _extent(reach))
-    return (*endless, *findings.diagnostics)
+    return (*ended, *endless, *findings.diagnostics)
 
 
 def _not_looked_at(place: Span, extent: str) -> Diagnostic:

@@ -9,6 +9,7 @@ import msgspec
 import typer
 
 from aos_deploy import planning_options
+from aos_deploy.bundles.ended_starts import remark_on_start
 from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, seconds
@@ -88,6 +89,8 @@ def plan(
             engine.on_progress = lambda found: tell(found.text)
             for said in await believe_all(engine, supposed):
                 typer.echo(f"supposed {said}", err=True)
+            if remark := remark_on_start(await engine.summary()):
+                typer.echo(f"aos: {remark}", err=True)
             if exact:
                 return await _exact_decision(engine, horizon)
             return await _searched_decision(engine, search)
