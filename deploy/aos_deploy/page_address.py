@@ -15,34 +15,41 @@ from aos_deploy.places import gateway_folder
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError
 
+_UNUSED_S = 600.0
+"""A gateway that is started for a run ends when nobody has looked, and no mission has run, for so long."""
 _START_S = 20.0
 _LOOK_S = 0.05
 _ANSWER_S = 2.0
 
 
 class GatewayNote(msgspec.Struct, frozen=True):
-    """The note by which a gateway is found: its address and process."""
+    """The note by which a gateway is found: its address and process, and after how long it ends unused."""
 
     address: str
     pid: int
+    unused_s: float | None = None
 
 
-def page_address(run: Path) -> str:
-    """Returns the address of a run's page, with the token; starts a gateway if none runs.
+def page_texts(run: Path) -> list[str]:
+    """Tells the address of a run's page, with the token, and how long it stays.
 
-    A gateway that is started goes on after the run. DeployError AOS805 if it cannot be started.
+    It starts a gateway if none runs. DeployError AOS805 if it cannot be started.
     """
-    address = _found() or _started(run.parent)
-    token = _token()
-    _show_run(address)
-    return f"{address}#/runs/{run.name}?token={token}"
+    gateway = _found() or _started(run.parent)
+    _show_run(gateway.address)
+    texts = [f"page {gateway.address}#/runs/{run.name}?token={_token()}"]
+    if gateway.unused_s is not None:
+        texts.append(
+            f"the page stays after the mission, until nobody has looked at it for {gateway.unused_s:g} s"
+        )
+    return texts
 
 
-def _found() -> str | None:
+def _found() -> GatewayNote | None:
     try:
         note = msgspec.json.decode((gateway_folder() / "gateway.json").read_bytes(), type=GatewayNote)
         with _answer(note.address, "v1/openapi.json"):
-            return note.address
+            return note
     except (OSError, *UNREADABLE):
         return None
 
@@ -66,12 +73,22 @@ def _token() -> str:
     return (gateway_folder() / "token").read_text().strip()
 
 
-def _started(runs: Path) -> str:
+def _started(runs: Path) -> GatewayNote:
     gateway_folder().mkdir(parents=True, exist_ok=True)
     log = gateway_folder() / "gateway.log"
     with log.open("ab") as said:
         process = subprocess.Popen(
-            [sys.executable, "-m", "aos_gateway", "--port", "0", "--runs", str(runs)],
+            [
+                sys.executable,
+                "-m",
+                "aos_gateway",
+                "--port",
+                "0",
+                "--unused",
+                str(_UNUSED_S),
+                "--runs",
+                str(runs),
+            ],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=said,
@@ -79,8 +96,8 @@ def _started(runs: Path) -> str:
         )
     until_s = time.monotonic() + _START_S
     while time.monotonic() < until_s and process.poll() is None:
-        if (address := _found()) is not None:
-            return address
+        if (gateway := _found()) is not None:
+            return gateway
         time.sleep(_LOOK_S)
     hint = "pip install 'aos-autonomy[page]' brings what it needs"
     raise DeployError(f"the page cannot be served; {log} says why", code="AOS805", hint=hint)

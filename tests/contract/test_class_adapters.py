@@ -9,7 +9,7 @@ from aos_protocol.keys import Keys
 from aos_protocol.messages import ActivationId, Cancel, SkillCall
 from aos_runtime.adapters import AdapterSettings, Binding, Call
 from aos_runtime.adapters.calls import Calls
-from aos_runtime.adapters.outbox import Outbox
+from aos_runtime.adapters.outbox import MAX_UNSENT_MESSAGES, Outbox
 from aos_runtime.adapters.pauses import Pauses
 from aos_runtime.bus.bus import Bus
 from aos_runtime.clock import SystemClock
@@ -72,6 +72,30 @@ class StopsLate:
         except asyncio.CancelledError:
             await self.is_given_up.wait()
             raise
+
+
+class Loud:
+    """Publishes three messages more than can wait, before anything is sent."""
+
+    async def call(self, call: Call) -> dict[str, object]:
+        for number in range(MAX_UNSENT_MESSAGES + 3):
+            call.publish("/noise", number=number)
+        return {}
+
+
+async def test_a_result_tells_how_many_messages_of_its_call_came_too_fast(
+    bus: Bus, keys: Keys, endpoint: str, tmp_path
+):
+    settings = AdapterSettings(
+        robot=keys.robot, service="arm", endpoint=endpoint, run_dir=str(tmp_path), adapter=""
+    )
+    outbox = Outbox(bus, keys)
+    calls = Calls(Service(settings, bus, SystemClock()), outbox, Pauses(), lambda _: True, lambda _: None)
+    calls.go_to(Loud())
+    results = [await calls.run(SkillCall(ActivationId("m", step), "/wave", {}, 20.0), "") for step in (1, 2)]
+    calls.close()
+    assert [result.lost for result in results] == [{"/noise": 3}] * 2
+    assert results[1].published == {"/noise": 2 * MAX_UNSENT_MESSAGES}
 
 
 async def test_a_call_that_was_told_as_stuck_is_told_as_stopped_to_nobody(

@@ -13,7 +13,7 @@ from aos_language.findings import Findings
 from aos_language.reading.files import read_documents
 from aos_protocol.documents import Skill, SkillModel
 from aos_protocol.errors import SkillError
-from aos_protocol.messages import ActivationId, SkillCall
+from aos_protocol.messages import ActivationId, SkillCall, SkillResult
 
 
 async def test_a_skill_is_called_with_the_fields_and_its_result_is_observed(system: System):
@@ -133,6 +133,22 @@ async def test_a_topic_on_which_nothing_ever_comes_is_told_once(
     assert {outcome.response for outcome in outcomes} == ({"quiet"} if told else {"heard", "quiet"})
     said = [notice for outcome in outcomes for notice in outcome.notices]
     assert said == [f"no message has come on /level in 3 calls of skills. {told}"] * bool(told)
+
+
+async def test_messages_that_an_adapter_could_not_send_are_told_where_the_mapping_hears_them(system: System):
+    async def publish(_: SkillCall) -> dict[str, Any]:
+        system.adapter.publish("/level", {"data": 9})
+        return {}
+
+    def changed(result: SkillResult) -> SkillResult:
+        return msgspec.structs.replace(result, lost={"/level": 1200, "/unheard": 7})
+
+    await system.adapter.serve("/sense", publish, changed)
+    outcome = await system.activate("sense", 1)
+    told = (
+        "sense: 1,200 messages on /level came too fast for the adapter to send them, the oldest of the call"
+    )
+    assert (outcome.response, outcome.notices) == ("heard", (told,))
 
 
 async def test_a_number_that_is_not_finite_is_told_once_for_each_field(system: System):

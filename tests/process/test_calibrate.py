@@ -181,9 +181,14 @@ def test_a_mission_that_began_with_a_kept_belief_is_not_explained_from_the_initi
     assert [bool(mission.ends_early) for mission in missions] == [False, True, True, False]
     assert "did not begin with the initial belief" in missions[1].ends_early
     (tmp_path / "run.json").touch()
-    sent = tmp_path / "sent.aosrun"
+    inbox = tmp_path.with_name("inbox")
+    inbox.mkdir()
+    sent = inbox / "sent.aosrun"
     write_bundle([tmp_path], sent)
-    assert read_missions(sent)[0].name == f"{sent}/{tmp_path.name}/missions/1"
+    assert read_missions(sent) == read_missions(inbox)
+    assert read_missions(inbox)[0].name == f"{sent}/{tmp_path.name}/missions/1"
+    shutil.copytree(tmp_path / "missions", inbox / tmp_path.name / "missions")
+    assert len(read_missions(inbox)) == len(starts), "a run in both is read once"
 
 
 def test_the_draws_of_documents_are_found_with_their_numbers():

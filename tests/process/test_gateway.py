@@ -97,6 +97,13 @@ def test_a_mission_tells_the_address_of_its_page(tmp_path):
         os.kill(note["pid"], signal.SIGTERM)
 
 
+def test_a_gateway_ends_by_itself_once_nobody_looks(tmp_path):
+    with gateway(tmp_path, "--unused", "0.2") as served:
+        with served.events("/v1/events"), pytest.raises(subprocess.TimeoutExpired):
+            served.process.wait(timeout=0.6)
+        assert served.process.wait(timeout=HANG_S) == 0
+
+
 def test_a_gateway_of_another_folder_shows_a_run_that_asks_for_its_page(tmp_path):
     with gateway(tmp_path, "--runs", str(tmp_path / "others")) as served:
         run = played(tmp_path, "--page")

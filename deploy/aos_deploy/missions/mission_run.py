@@ -13,7 +13,7 @@ from aos_deploy.deployment.reading import Deployment, with_whole_paths
 from aos_deploy.events import Event, Report, ServiceChanged, Told
 from aos_deploy.missions.readiness import tell_lost_skills, unbound_adapters, until_skills_can_run
 from aos_deploy.missions.taking_up import TakenUp, worlds_text
-from aos_deploy.page_address import page_address
+from aos_deploy.page_address import page_texts
 from aos_deploy.printing import count, from_here, time_text
 from aos_deploy.processes.endpoint import hold_endpoint
 from aos_deploy.processes.program import outsiders_of, programs_of_deployment
@@ -159,7 +159,8 @@ class MissionRun:
                 await supervisor.start()
                 self._write_record(run, endpoint, supervisor)
                 if self._shows_page:
-                    self._report(Told(f"page {await asyncio.to_thread(page_address, run.path)}"))
+                    for text in await asyncio.to_thread(page_texts, run.path):
+                        self._report(Told(text))
                 self._write_again = partial(self._write_record, run, endpoint, supervisor)
                 async with asyncio.TaskGroup() as tasks:
                     starting = tasks.create_task(self._start_mission(supervisor))

@@ -49,7 +49,8 @@ class _Kept(msgspec.Struct, frozen=True):
 def read_missions(path: Path) -> tuple[RecordedMission, ...]:
     """Those of a run directory, of a file of runs, of one that an experiment keeps, or of all in a folder.
 
-    DeployError AOS801 where there are none. A folder with both has its missions in its file.
+    DeployError AOS801 where there are none. A folder with both has its missions in its file. A run that
+    a folder has twice, as a directory and in a file of runs, counts once.
     """
     missions = tuple(_missions(path, path))
     if not missions:
@@ -69,10 +70,15 @@ def _missions(path: Path, named: Path) -> Iterator[RecordedMission]:
     elif (path / JOURNAL).is_file():
         yield _of_run(path, str(from_here(named)))
     elif path.is_dir():
-        for below in sorted(
-            folder for folder in path.iterdir() if folder.is_dir() and not folder.is_symlink()
-        ):
+        folders = sorted(each for each in path.iterdir() if each.is_dir() and not each.is_symlink())
+        for below in folders:
             yield from _missions(below, named / below.name)
+        names = {below.name for below in folders}
+        for file in sorted(path.glob(f"*{SUFFIX}")):
+            for run in opened_bundle(file):
+                if run.name not in names:
+                    names.add(run.name)
+                    yield from _missions(run, named / file.name / run.name)
 
 
 def _of_file(path: Path) -> Iterator[RecordedMission]:

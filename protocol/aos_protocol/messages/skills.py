@@ -126,9 +126,9 @@ class SkillResult(Message, frozen=True):
     """An adapter's answer: the skill has succeeded. Whatever else happened is an error reply.
 
     `published` counts, by topic path, the messages sent on it since the adapter started: whoever listens has
-    seen everything once it has seen that `TopicMessage.number`. An adapter that knows the observation itself
-    gives its `response` with the `numbers` beside it, and the responses of `monitors` that it knows; then the
-    mappings' rules do not run.
+    seen everything once it has seen that `TopicMessage.number`. Beside them `lost` were published during the
+    call and never sent. An adapter that knows the observation itself gives its `response` with the `numbers`
+    beside it, and the responses of `monitors` that it knows; then the mappings' rules do not run.
     """
 
     id: ActivationId
@@ -137,6 +137,7 @@ class SkillResult(Message, frozen=True):
     response: str = ""
     numbers: dict[str, Any] = {}
     monitors: dict[str, str] = {}
+    lost: dict[str, int] = {}
 
 
 class Cancel(Message, frozen=True):

@@ -6,6 +6,8 @@ import logging
 from collections.abc import Callable
 from pathlib import Path
 
+import msgspec
+
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import Cancel, Cancelled, SkillCall, SkillProgress, SkillResult
 from aos_protocol.spelling import error_text, sendable_text
@@ -119,11 +121,14 @@ class Calls:
         self._ledger.start(request)
         self._fence.note(request)
         may_take_s = call.deadline_s + self._settings.cancel_s
+        lost_before = self._outbox.lost
         running = self._begin(call)
         try:
             with ends_if_blocked(call.path, may_take_s):
                 answer = await self._ended(running)
             result = result_of(call, binding, answer, self._outbox.sent, self._settings.service)
+            if lost := self._outbox.lost - lost_before:
+                result = msgspec.structs.replace(result, lost=dict(lost))
         except AosError as error:
             self._ledger.fail(call.id, error)
             self._tell(last_progress(call, error))

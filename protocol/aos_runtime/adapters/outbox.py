@@ -29,7 +29,9 @@ class Outbox:
         self._unsent: deque[tuple[str, dict[str, Any]]] = deque(maxlen=MAX_UNSENT_MESSAGES)
         self._sending = threading.Lock()
         self._is_sending = False
-        self._lost = 0
+        self._giving_way: Counter[str] = Counter()
+        self.lost: Counter[str] = Counter()
+        """The number of messages so far on each topic that gave way and were never sent."""
 
     @property
     def sent(self) -> dict[str, int]:
@@ -46,7 +48,7 @@ class Outbox:
         fields = sendable(fields, f"a message on {topic}")
         with self._sending:
             if len(self._unsent) == MAX_UNSENT_MESSAGES:
-                self._lost += 1
+                self._giving_way[self._unsent[0][0]] += 1
             self._unsent.append((topic, fields))
             is_first, self._is_sending = not self._is_sending, True
         if is_first:
@@ -57,9 +59,10 @@ class Outbox:
         with self._sending:
             waiting, self._is_sending = list(self._unsent), False
             self._unsent.clear()
+            lost, self._giving_way = self._giving_way, Counter()
         for topic, fields in waiting:
             self._sent[topic] += 1
             self._bus.tell(self._keys.topic(topic), TopicMessage(self._sent[topic], fields))
-        if self._lost:
-            _log.warning("%d topic messages came too fast to be sent", self._lost)
-            self._lost = 0
+        for topic, number in lost.items():
+            _log.warning("%d messages on %s came too fast to be sent", number, topic)
+        self.lost = self.lost + lost

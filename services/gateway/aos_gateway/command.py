@@ -31,6 +31,12 @@ Connect = Annotated[
     list[str] | None, typer.Option("--connect", metavar="ENDPOINT", help="A system elsewhere, with --robot")
 ]
 Metrics = Annotated[bool, typer.Option("--metrics", help="Also serve metrics for Prometheus, at /metrics")]
+Unused = Annotated[
+    float | None,
+    typer.Option(
+        "--unused", metavar="SECONDS", min=0, help="End when no mission runs, and none looked so long"
+    ),
+]
 Files = Annotated[
     list[Path] | None,
     typer.Argument(metavar="FILE", help="Runs that somebody has sent, from aos export --format bundle"),
@@ -52,6 +58,7 @@ def serve(
     connect: Connect = None,
     robot: Robots = None,
     metrics: Metrics = False,
+    unused: Unused = None,
 ) -> None:
     """Show runs, living and past, on a page and over HTTP.
 
@@ -93,6 +100,7 @@ def serve(
         projects=tuple(projects or [Path()]),
         remote=tuple(zip(endpoints, robots, strict=True)),
         has_metrics=metrics,
+        unused_s=unused,
     )
     try:
         asyncio.run(serve_gateway(settings, ready))

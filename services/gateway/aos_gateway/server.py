@@ -14,6 +14,7 @@ from aos_deploy.page_address import GatewayNote
 from aos_deploy.places import gateway_folder
 from aos_gateway.api.access import access_of, kept_token
 from aos_gateway.api.app import make_app
+from aos_gateway.api.use import Use
 from aos_gateway.metrics.counting import Metrics
 from aos_gateway.runs.drawings import Drawings
 from aos_gateway.runs.feed import Watches
@@ -29,7 +30,10 @@ _BACKLOG = 128
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True):
-    """The options of `aos serve`. `remote` are endpoints with their robots, `sent` are runs out of files."""
+    """The options of `aos serve`. `remote` are endpoints with their robots, `sent` are runs out of files.
+
+    With `unused_s` it ends when nobody has looked for so long, and no mission has run.
+    """
 
     host: str = "127.0.0.1"
     port: int = 7480
@@ -40,6 +44,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True):
     projects: tuple[Path, ...] = ()
     remote: tuple[tuple[str, str], ...] = ()
     has_metrics: bool = False
+    unused_s: float | None = None
 
 
 async def serve_gateway(settings: Settings, ready: Callable[[str, str], None]) -> None:
@@ -69,18 +74,28 @@ async def serve_gateway(settings: Settings, ready: Callable[[str, str], None]) -
                 drawings=Drawings(),
                 metrics=await asyncio.to_thread(Metrics, shelf) if settings.has_metrics else None,
             )
+            use = Use(make_app(gateway, access))
             config = uvicorn.Config(
-                make_app(gateway, access),
+                use,
                 log_config=None,
                 access_log=False,
                 lifespan="off",
                 server_header=False,
                 timeout_graceful_shutdown=_LAST_STREAMS_S,
             )
-            with _noted(folder, address):
+            with _noted(folder, GatewayNote(address, os.getpid(), settings.unused_s)):
                 ready(address, token)
-                await uvicorn.Server(config).serve(sockets=[listener])
+                server = uvicorn.Server(config)
+                ending = tasks.create_task(_end_unused(server, use, settings.unused_s))
+                await server.serve(sockets=[listener])
+                ending.cancel()
             watches.close()
+
+
+async def _end_unused(server: uvicorn.Server, use: Use, unused_s: float | None) -> None:
+    if unused_s is not None:
+        await use.until_unused(unused_s)
+        server.should_exit = True
 
 
 @contextmanager
@@ -103,13 +118,13 @@ def listening(host: str, port: int) -> Iterator[socket.socket]:
 
 
 @contextmanager
-def _noted(folder: Path, address: str) -> Iterator[None]:
+def _noted(folder: Path, note: GatewayNote) -> Iterator[None]:
     """Lets `aos-up --page` find this gateway while it serves."""
     path = folder / "gateway.json"
-    path.write_bytes(msgspec.json.encode(GatewayNote(address, os.getpid())))
+    path.write_bytes(msgspec.json.encode(note))
     try:
         yield
     finally:
         with suppress(OSError, msgspec.MsgspecError):
-            if msgspec.json.decode(path.read_bytes(), type=GatewayNote).pid == os.getpid():
+            if msgspec.json.decode(path.read_bytes(), type=GatewayNote).pid == note.pid:
                 path.unlink()

@@ -1,4 +1,4 @@
-// Numbers, times and names for people.
+// Numbers, times and names for people. No line breaks between a number and its unit.
 
 export const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 
@@ -36,16 +36,16 @@ export function chance(value) {
 
 export function percent(value) {
   if (!isNumber(value)) return "–";
-  if (value > 0.9995 && value < 1) return ">99.9 %";
-  if (value < 0.0005 && value > 0) return "<0.1 %";
-  return `${Number((value * 100).toFixed(1))} %`;
+  if (value > 0.9995 && value < 1) return ">99.9\u00a0%";
+  if (value < 0.0005 && value > 0) return "<0.1\u00a0%";
+  return `${Number((value * 100).toFixed(1))}\u00a0%`;
 }
 
 export function seconds(value) {
   if (!isNumber(value)) return "";
-  if (value < 0.001) return "<1 ms";
-  if (value < 1) return `${Math.round(value * 1000)} ms`;
-  return value < 60 ? `${value.toFixed(1)} s` : `${Math.floor(value / 60)} min ${Math.round(value % 60)} s`;
+  if (value < 0.001) return "<1\u00a0ms";
+  if (value < 1) return `${Math.round(value * 1000)}\u00a0ms`;
+  return value < 60 ? `${value.toFixed(1)}\u00a0s` : `${Math.floor(value / 60)} min ${Math.round(value % 60)} s`;
 }
 
 export function moment(text) {

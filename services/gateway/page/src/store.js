@@ -72,6 +72,7 @@ export async function loadRuns() {
     problem.value = null;
   } catch (error) {
     problem.value = error;
+    if (lost() === "refused") connection.value = "refused"; // The event stream may have failed before.
   }
 }
 

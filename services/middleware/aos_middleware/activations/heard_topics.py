@@ -117,6 +117,11 @@ class HeardTopics:
         """Returns what is to be told of the topics, now that all that came has been evaluated."""
         if result.response:
             return []
+        lost = {path.strip("/"): number for path, number in result.lost.items()}
+        for topic in self._topic_of.values():
+            if number := lost.get(topic.strip("/")):
+                fast = f"{number:,} messages on {topic} came too fast for the adapter to send them"
+                self._odd.append(f"{self._skill}: {fast}, the oldest of the call")
         own = {topic: key in self._last_numbers for key, topic in self._topic_of.items()}
         return self._odd + self._around.silent.take_call(
             self._around.monitors.has_heard() | own, result.published
