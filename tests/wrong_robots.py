@@ -11,6 +11,7 @@ import asyncio
 import sys
 import tempfile
 from functools import cache
+from itertools import chain
 from pathlib import Path
 
 import msgspec
@@ -24,6 +25,9 @@ from aos_lab.trials.script_player import ScriptPlayer
 from aos_lab.trials.setting import deployment_of, world_deployment_of
 from aos_lab.trials.trial import Trial
 from aos_solver.child.engine import Engine
+
+_FOLDER = shipped("deploy/experiments")
+EXPERIMENTS = sorted(path.stem for path in _FOLDER.glob("*.yaml"))
 
 
 class WrongRobot(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -59,24 +63,27 @@ class Wrong(msgspec.Struct, frozen=True):
 
 
 @cache
-def wrong_robots() -> tuple[Wrong, ...]:
+def _robots() -> dict[str, dict[str, dict[str, WrongRobot]]]:
     yaml = YAML(typ="safe", pure=True)
     entries = yaml.load((Path(__file__).parent / "wrong_robots.yaml").read_text(encoding="utf-8"))
-    robots = msgspec.convert(entries, dict[str, dict[str, dict[str, WrongRobot]]])
-    found = []
-    for path in sorted(shipped("deploy/experiments").glob("*.yaml")):
-        experiment = read_experiment(path)
-        for name, part in experiment.parts.items():
-            known = robots.get(path.stem, {}).get(name, {})
-            for claim in part.claims:
-                place = f"{path.stem}/{name}"
-                found.append(Wrong(experiment, path.parent, place, part, claim, known.get(claim.says)))
-    return tuple(found)
+    return msgspec.convert(entries, dict[str, dict[str, dict[str, WrongRobot]]])
+
+
+@cache
+def wrong_robots(experiment: str) -> tuple[Wrong, ...]:
+    path = _FOLDER / f"{experiment}.yaml"
+    read = read_experiment(path)
+    known = _robots().get(experiment, {})
+    return tuple(
+        Wrong(read, _FOLDER, f"{experiment}/{name}", part, claim, known.get(name, {}).get(claim.says))
+        for name, part in read.parts.items()
+        for claim in part.claims
+    )
 
 
 @cache
 def _missions(name: str, plans: tuple[str, ...]) -> ModelMissions:
-    wrong = next(wrong for wrong in wrong_robots() if wrong.name == name)
+    wrong = next(wrong for wrong in wrong_robots(name.partition("/")[0]) if wrong.name == name)
     with tempfile.TemporaryDirectory() as out:
         own = deployment_of(msgspec.structs.replace(wrong.part, by="model"), wrong.folder, Path(out))
     world = world_deployment_of(wrong.part, own, wrong.folder) or own
@@ -144,11 +151,9 @@ def main() -> None:
     options = parser.parse_args()
     are_wrong = True
     with tempfile.TemporaryDirectory() as folder:
-        for wrong in wrong_robots():
-            experiment = wrong.name.partition("/")[0]
-            is_wanted = not options.experiments or experiment in options.experiments
+        for wrong in chain.from_iterable(map(wrong_robots, options.experiments or EXPERIMENTS)):
             has_world = deployment_of(wrong.part, wrong.folder, Path(folder)).world is not None
-            if wrong.claim.only == "model" or not is_wanted or not has_world:
+            if wrong.claim.only == "model" or not has_world:
                 continue
             verdict = asyncio.run(tried_in_physics(wrong, Path(folder)))
             fails = verdict.missions > 0 and verdict.held == 0
