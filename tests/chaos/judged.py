@@ -1,16 +1,19 @@
 """The verdict on a mission that was disturbed: journal, exit code, motions, processes that are left."""
 
+import asyncio
 import json
-import subprocess
 import time
 from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 
 import msgspec
-from tests.chaos.up import BIN, Process
+from tests.chaos.up import Process
 
+from aos_deploy.history_check.files import check_run
+from aos_deploy.history_check.replayed import replayed
 from aos_deploy.runs.end import account_of
+from aos_deploy.runs.living import chosen_run
 from aos_deploy.runs.verdict import Verdict
 
 _LEFT_S = 15.0
@@ -47,10 +50,7 @@ def judge(
     if report.ending not in allowed:
         report.faults.append(f"it ended as {report.ending} with exit code {status}: {verdict.remark}")
     report.faults += _faults_of_exit_code(run / "summary.json", verdict, status, has_space="" not in allowed)
-    check = subprocess.run([BIN / "aos", "check", run, "--json"], capture_output=True, text=True, check=False)
-    found = json.loads(check.stdout) if check.stdout else {"violations": [check.stderr], "replayed": {}}
-    report.faults += [f"aos check: {violation}" for violation in found["violations"]]
-    report.beliefs = found["replayed"].get("beliefs", 0)
+    _check(run, report)
     report.faults += tracebacks(folder)
     until_s = time.monotonic() + _LEFT_S
     while (left := [process for process in processes if process.is_left]) and time.monotonic() < until_s:
@@ -62,6 +62,17 @@ def judge(
     begun = Counter(line.split()[1] for line in lines if line.startswith("begun"))
     report.activations = len(begun)
     report.faults += [f"{id} moved {count} times" for id, count in begun.items() if count > 1]
+
+
+def _check(run: Path, report: Report):
+    """Does what `aos check` does. A command for each of the runs would import all of it anew."""
+    if chosen_run(run, None).is_running:
+        report.faults.append("aos check: it goes on")
+    again = asyncio.run(replayed(run, lambda _: None))
+    report.faults += [
+        f"aos check: {violation}" for violation in (*check_run(run).violations, *again.violations)
+    ]
+    report.beliefs = again.compared
 
 
 def _faults_of_exit_code(
