@@ -146,5 +146,11 @@ def _check_complete(
             span = unique[DocumentKind.SKILL, meant].span
             message = f"the skill {meant} has no abstraction mapping, and the mapping {name} no skill"
             findings.error("AOS114", message, span, f"Did you mean `{name}`?")
+    meant_by = {nearest(name, sorted(skills - mappings)) for name in mappings - skills}
+    for name in sorted(skills - mappings - meant_by) if skills & mappings else ():
+        # Where all skills lack one, that is how the bundle is written.
+        span, hint = unique[DocumentKind.SKILL, name].span, f"It is called as `/{name}`, with its parameters"
+        message = f"{name} has no abstraction mapping, which others have: it gets a derived one"
+        findings.remark("AOS114", message, span, hint)
     if not skills and not mappings:
         findings.error("AOS105", "there are no skills", bundle, "Add .sd files")

@@ -38,7 +38,7 @@ CODES: dict[str, str] = {
     "AOS111": "two documents of one name",
     "AOS112": "the new documents do not fit the running mission",
     "AOS113": "documents of different projects",
-    "AOS114": "a skill or a monitor has one half only, and the other cannot be derived",
+    "AOS114": "a skill or a monitor has one half only; a remark where the other is derived",
     "AOS115": "no environment document",
     "AOS116": "a response that the abstraction mapping never gives",
     "AOS117": "a response that the skill document never produces",

@@ -53,6 +53,10 @@ state_variable: map<int, int> stock
 code:
 state.stock = {{1, 5}, {4, 6}};
 
+state_variable: map<string, int> price
+code:
+state.price = {{"a", 4}};
+
 state_variable: Parameters first
 
 state_variable: Parameters second
@@ -128,6 +132,11 @@ CODE = {
         "try { state__.sorted.at(Blue).insert(1); } catch (const std::out_of_range& told) "
         '{ __reward += 0.5 * (std::string(told.what()).find("map") == 2); }',
         20 + 2 + 2 + 0 + 5 + 0.5,
+    ),
+    "asked": (
+        "Parameters* both[2] = {&state.first, &state.second}; for (Parameters* each : both)"
+        '__reward += each->weight; __reward += state__.price["a"] + state.price["z"];',
+        8,
     ),
     "found": (
         "auto at = state__.stock.find(4); at->second += amount;"

@@ -186,6 +186,9 @@ def test_defaults_that_set_the_same_element_are_told():
     copied = ENVIRONMENT.replace("state.second.x = 2;", "state.first.x = 2;")
     (only,) = finding_texts(environment=copied)
     assert only.startswith("13 AOS141 the default of second sets `state.first.x`, and not the variable")
+    early = ENVIRONMENT.replace("state.first.x = ", "state.first.x = state.second.x + ")
+    (only,) = finding_texts(environment=early)
+    assert only.endswith("reads `state.second.x` before that has its own. Declare first below second")
 
 
 def test_what_only_looks_at_the_state_may_not_change_it_where_the_copies_are_one_either():

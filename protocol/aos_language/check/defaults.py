@@ -2,17 +2,20 @@
 
 import re
 
-from aos_language.cpp.snippets import Access, Mention, read_cpp
+from aos_language.cpp.snippets import Access, Mention, read_cpp, read_cpp_expression
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Environment, StateVariable
 
 
 def check_defaults(environment: Environment, findings: Findings) -> None:
-    """Reports AOS141 for a default that sets other variables only, and for an element that several
-    defaults set."""
+    """Reports AOS141 for a default that sets other variables only or reads one that has its own later, and
+    for an element that several defaults set."""
+    later = {one.name for one in environment.variables if one.default_code or one.default_value}
     first: dict[str, tuple[str, Span]] = {}
     for variable in environment.variables:
+        later.discard(variable.name)
+        _check_order(variable, later, findings)
         writes = _writes(variable)
         others = [mention for mention in writes if mention.path[1] != variable.name]
         if others and len(others) == len(writes):
@@ -26,6 +29,17 @@ def check_defaults(environment: Environment, findings: Findings) -> None:
             if name != variable.name:
                 message = f"the defaults of {name} and {variable.name} both set `{mention.text}`"
                 findings.warning("AOS141", message, place, f"The first is at {span}")
+
+
+def _check_order(variable: StateVariable, later: set[str], findings: Findings) -> None:
+    for snippet, read in ((variable.default_code, read_cpp), (variable.default_value, read_cpp_expression)):
+        for mention in read(snippet.code).mentions if snippet is not None else ():
+            root, *names = mention.path
+            if root == "state" and names and names[0] in later and mention.access is Access.READ:
+                assert snippet is not None
+                place = snippet.locate(mention.root.line, mention.root.column)
+                message = f"the default of {variable.name} reads `{mention.text}` before that has its own"
+                findings.warning("AOS141", message, place, f"Declare {variable.name} below {names[0]}")
 
 
 def _writes(variable: StateVariable) -> list[Mention]:

@@ -75,9 +75,20 @@ def check_name(name: Text, what: str, findings: Findings) -> bool:
 
 def enum_type(name: Text, values: Iterable[Text], findings: Findings) -> EnumType:
     """The enum of these values; an error for each that cannot be a name."""
-    values = tuple(value for value in values if check_name(value, "an enum value", findings) or value.text)
+    values = tuple(_unnumbered(value, findings) for value in values if value.text)
     texts, spans = tuple(value.text for value in values), tuple(value.span for value in values)
     return EnumType(name.text, texts, name.span, spans)
+
+
+def _unnumbered(value: Text, findings: Findings) -> Text:
+    """Returns the value's name; an error where it cannot be one, or has a number of its own."""
+    name, equals, number = value.text.partition("=")
+    if equals and _IDENTIFIER.fullmatch(name.strip()):
+        message = f"the enum value {name.strip()} cannot have a number of its own"
+        findings.error("AOS126", message, value.span, f"Values count from 0: leave out `={number}`")
+        return Text(name.strip(), value.span)
+    check_name(value, "an enum value", findings)
+    return value
 
 
 def array_type(type_name: str) -> tuple[str, bool, str]:

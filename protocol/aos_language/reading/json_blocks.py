@@ -6,6 +6,7 @@ import msgspec
 
 from aos_language.reading.code import joined
 from aos_language.reading.document import check_name, enum_type, normal_type
+from aos_language.reading.glued_else import with_else_apart
 from aos_language.reading.json_record import Record
 from aos_protocol.documents import Assignment, Iteration, TemporaryVariable
 
@@ -21,6 +22,7 @@ def read_block(record: Record, key: str) -> tuple[Assignment, ...]:
     blocks: list[Assignment] = []
     for item in record.records(key, f'an assignment of "{key}"'):
         block = _assignment(item)
+        block = with_else_apart(block, record.findings) if block is not None else None
         if block is not None and blocks and (whole := _gone_on(blocks[-1], block)) is not None:
             blocks[-1] = whole
         elif block is not None:

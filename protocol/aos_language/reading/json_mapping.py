@@ -2,6 +2,7 @@
 
 import msgspec
 
+from aos_language.findings import Findings
 from aos_language.reading.code import dedented
 from aos_language.reading.document import check_name, normal_type
 from aos_language.reading.json_record import Record
@@ -92,6 +93,8 @@ def _activation(record: Record) -> documents.Activation | None:
         for kind, word in documents.ACTIVATION_KINDS.items()
         if (service := group.record(word, word))
     }
+    if not given:
+        group.lack(*documents.ACTIVATION_KINDS.values())
     group.finish()
     if not given:
         message, hint = ('ModuleActivation lacks "RosService"', 'Or "RosAction", or "Skill" if it is neither')
@@ -168,7 +171,9 @@ def _local_variable(record: Record) -> documents.LocalVariable | None:
     if record.has("RosParameter"):
         message = "values from the ROS parameter server are not supported"
         record.findings.error("AOS124", message, record.key_span("RosParameter"))
-    elif not parts.sources:
+        record.ignore("RosParameter")
+        return build_local_variable(parts, Findings())  # That it has no source is not told as well.
+    if not parts.sources:
         record.lack(*JSON_SOURCES)
     record.finish()
     return build_local_variable(parts, record.findings)

@@ -7,6 +7,7 @@ import msgspec
 from aos_language.findings import Findings
 from aos_language.reading.code import expression
 from aos_language.reading.document import check_name, enum_type, normal_type
+from aos_language.reading.glued_else import with_else_apart
 from aos_language.reading.sdl_text import Part, Section, enum_values
 from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
@@ -61,7 +62,7 @@ def read_block(section: Section | None, findings: Findings) -> tuple[Assignment,
         else:
             found[-1].code = part.code()
     closed = (assignment.closed() for assignment in found)
-    return tuple(assignment for assignment in closed if assignment is not None)
+    return tuple(with_else_apart(assignment, findings) for assignment in closed if assignment is not None)
 
 
 def _loop(part: Part, findings: Findings) -> Iteration | None:

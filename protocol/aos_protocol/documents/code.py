@@ -10,7 +10,7 @@ class Snippet(msgspec.Struct, frozen=True):
 
     `origins[i]` is the place in the document where line `i` of `code` starts, so that a compiler's or an
     interpreter's complaint comes back to the document whatever the dialect did to the text. `escapes` holds
-    (line, column, width) of each character of `code` that takes `width` > 1 characters of its document.
+    (line, column, width) of each character of `code` that takes `width` characters of its document, not 1.
     """
 
     code: str

@@ -70,8 +70,9 @@ _HEADERS = {
 _HEADER_OF = {name: header for header, names in _HEADERS.items() for name in names.split()}
 
 _UNREPEATABLE = frozenset({
-    "chrono", "clock", "clock_gettime", "default_random_engine", "drand48", "getrandom", "gettimeofday",
-    "mt19937", "mt19937_64", "rand", "rand_r", "random", "random_device", "random_shuffle", "srand",
+    "bernoulli_distribution", "chrono", "clock", "clock_gettime", "default_random_engine",
+    "discrete_distribution", "drand48", "getrandom", "gettimeofday", "mt19937", "mt19937_64",
+    "normal_distribution", "rand", "rand_r", "random", "random_device", "random_shuffle", "srand",
     "srandom", "time", "uniform_int_distribution", "uniform_real_distribution",
 })  # fmt: skip
 _CHANGING_STATIC = re.compile(

@@ -20,6 +20,7 @@ def object_edits(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, 
 
     - `tCup* cup = state.tCupObjects[0]` and a lambda's `tCup* cup` become `auto* cup`
     - `tCup* best = NULL` becomes `aos::Pointer<tCup, decltype(state)> best`, of the copy that it is set from
+    - `tCup* cups[2] = {...}` becomes an array of such pointers
     - `vector<tCup*> cups` becomes `vector<aos::Pointer<tCup, decltype(state)>> cups` in the same way
     - `tCup& cup = *state.tCupObjects[0]` becomes `auto& cup`
     - `auto cups = state.tCupObjects` becomes a vector, which may be sorted
@@ -32,7 +33,7 @@ def object_edits(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, 
         initial = declaration.initial
         if pointer is not None and pointer[2] in object_types and not pointer[1]:
             copy = _copy_set_from(cpp, declaration, pointer[2])
-            if not _waits_for_its_object(cpp, declaration):
+            if not _names_its_copy(cpp, declaration):
                 yield pointer.start(2), pointer.end(2), "auto"
             elif copy:
                 yield pointer.start(2), len(before.rstrip()), f"aos::Pointer<{pointer[2]}, decltype({copy})>"
@@ -71,20 +72,21 @@ def _is_list(cpp: Cpp, initial: Extent, object_types: frozenset[str]) -> bool:
     )
 
 
-def _waits_for_its_object(cpp: Cpp, declaration: Declaration) -> bool:
-    """Returns whether a pointer starts without an object, and so without a type to take over."""
+def _names_its_copy(cpp: Cpp, declaration: Declaration) -> bool:
+    """Returns whether a pointer has no type to take over: one without an object, or one of an array."""
     if declaration.kind is not DeclarationKind.VARIABLE:
         return False
-    initial = declaration.initial
-    if initial is None:
-        return not cpp.code[declaration.extent.end :].lstrip().startswith(":")  # Else it is of a loop.
+    initial, after = declaration.initial, cpp.code[declaration.extent.end :].lstrip()
+    if initial is None or after.startswith("["):
+        return not after.startswith(":")  # Else it is of a loop.
     return cpp.code[initial.start : initial.end].strip() in _NO_OBJECT
 
 
 def _copy_set_from(cpp: Cpp, declaration: Declaration, type_name: str) -> str:
     """The copy of the state whose objects a pointer is set to; empty where `tCup*` is right already."""
+    initial = [] if declaration.initial is None else [declaration.initial]
     assigned = [m.assigned for m in cpp.mentions if m.path == (declaration.name,) and m.assigned is not None]
-    direct = {copy for extent in assigned for copy in _copies_in(cpp, type_name, extent)}
+    direct = {copy for extent in initial + assigned for copy in _copies_in(cpp, type_name, extent)}
     copies = direct or _copies_in(cpp, type_name)
     return min(copies) if len(copies) == 1 and _ALWAYS_WRITTEN not in copies else ""
 

@@ -122,6 +122,13 @@ class Map : public Sorted<Store, std::remove_cvref_t<decltype(Store::value_type:
   Map() = default;
 
   auto& operator[](const Key& key) { return this->insert({key, {}}).first->second; }
+  /** The value of a key, of a map that no code changes: that of a missing key is a new one's. */
+  const auto& operator[](const Key& key) const {
+    using Value = std::remove_cvref_t<decltype(Store::value_type::second)>;
+    static const Value missing{};
+    const auto at = this->find(key);
+    return at == this->end() ? missing : at->second;
+  }
   auto& at(const Key& key) { return found(this->find(key)); }
   const auto& at(const Key& key) const { return found(this->find(key)); }
   auto try_emplace(const Key& key, auto&&... arguments) {
