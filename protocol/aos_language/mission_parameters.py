@@ -19,7 +19,7 @@ from aos_protocol.errors import DocumentError
 from aos_protocol.spelling import quoted
 
 OPTION = "--set"
-"""Values are written `NAME=VALUE` there; it is also the place of what is wrong with one."""
+"""Values are written `NAME=VALUE` behind it."""
 
 _INTEGERS = {
     "int": 32, "int8_t": 8, "int16_t": 16, "int32_t": 32, "int64_t": 64,
@@ -102,7 +102,12 @@ def mission_value_of_option(text: str) -> MissionValue:
     if not equals or not name.strip():
         hint = f"Write it as {OPTION} target=alice"
         raise DocumentError(f"{text!r} sets no mission parameter", code="AOS146", hint=hint)
-    return MissionValue(name.strip(), value, Span(OPTION, 1, 1))
+    return mission_value(name.strip(), value)
+
+
+def mission_value(name: str, text: str) -> MissionValue:
+    """The value of a parameter that no file sets. What is wrong with it is told at the option with it."""
+    return MissionValue(name, text, Span(f"{OPTION} {name}={text}"))
 
 
 def declared_values(

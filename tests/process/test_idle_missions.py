@@ -6,7 +6,10 @@ from aos_protocol.messages import MissionState
 from aos_solver.child.search import Search
 from aos_solver.mission.rules.endings import MissionLimits
 
-_SAID = "changed nothing and told nothing, since nothing is known that is worth more"
+_SAID = (
+    "changed nothing and told nothing, since nothing is known that is worth more "
+    "within the horizon of 4 decisions"
+)
 
 
 def _door(by_itself: str) -> dict[str, str]:

@@ -18,7 +18,7 @@ from aos_deploy.places import cache_dir
 from aos_deploy.runs.directory import RunDirectory
 from aos_language.mission_parameters import mission_value_of_option
 from aos_protocol.documents import Project
-from aos_protocol.errors import DocumentError, PlanningError
+from aos_protocol.errors import DeployError, DocumentError, PlanningError
 from aos_protocol.messages import MissionBegun, ProjectRevision
 from aos_runtime.disk.journal import Journal
 from aos_solver.building.build import BuiltModel
@@ -231,6 +231,9 @@ def test_commands_take_values_and_a_policy_is_for_its_own(tmp_path):
         run("plan", bundle, "--policy", policy)
     with pytest.raises(DocumentError, match="sets no mission parameter"):
         run("simulate", bundle, "--set", "target")
+    with pytest.raises(DeployError) as unknown:
+        run("plan", bundle, "--set", "targt=bob")
+    assert str(unknown.value.diagnostics[0].span) == "--set targt=bob"
     simulated = run("simulate", bundle, "--set", "target=bob", "--runs", "2", "--simulations", "500")
     assert isinstance(simulated, dict)
     assert all("give(to=bob)" in mission["actions"] for mission in simulated["runs"])

@@ -10,9 +10,8 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.played.faults import FAILED_CALL
-from aos_language.mission_parameters import OPTION, usable_values
+from aos_language.mission_parameters import mission_value, usable_values
 from aos_protocol.codec import UNREADABLE
-from aos_protocol.diagnostics import Span
 from aos_protocol.documents import MissionValue, Project
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import MissionEntry
@@ -83,7 +82,7 @@ def worlds_of(
         if entry.belief != KEEP:
             found = []
         file = mission_folder(run, entry.number) / f"{name}.jsonl"
-        own = tuple(MissionValue(key, text, Span(OPTION, 1, 1)) for key, text in entry.values.items())
+        own = tuple(mission_value(key, text) for key, text in entry.values.items())
         found.append(
             PlayedWorld(
                 file,

@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from aos_language.mission_parameters import OPTION, usable_values
-from aos_protocol.diagnostics import Span
+from aos_language.mission_parameters import mission_value, usable_values
 from aos_protocol.documents import MissionValue, Project
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import Activate, Outcome, StartMission
@@ -82,10 +81,7 @@ class Succession:
     def values(self, start: StartMission | None) -> tuple[MissionValue, ...]:
         """The values of mission parameters that are set for a mission; the last one for each counts."""
         own = start.values if start is not None else {}
-        return (
-            *self._mission_values,
-            *(MissionValue(name, text, Span(OPTION, 1, 1)) for name, text in own.items()),
-        )
+        return (*self._mission_values, *(mission_value(name, text) for name, text in own.items()))
 
     async def model(
         self, shelf: ModelShelf, running: RunningModel, start: StartMission, last: Mission | None

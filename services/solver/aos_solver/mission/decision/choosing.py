@@ -66,6 +66,7 @@ class Chooser:
         self._passed_over = PassedOver(around, terms.hold_s)
         self._searches = MadeSearches()
         self._idle = 0  # decisions in a row
+        self._idle_horizon = 0
         self._endless = EndlessLoops()
 
     @property
@@ -73,9 +74,10 @@ class Chooser:
         """The remark on decisions that would be made for ever; empty where there are none."""
         if self._idle < _IDLE_DECISIONS:
             return ""
+        within = f" within the horizon of {self._idle_horizon} decisions" if self._idle_horizon else ""
         return (
             f"the last {self._idle} decisions changed nothing and told nothing, "
-            "since nothing is known that is worth more"
+            f"since nothing is known that is worth more{within}"
         )
 
     def drop(self, choice: Choice) -> None:
@@ -164,6 +166,7 @@ class Chooser:
                 continue
             is_free = not barred and not without.reasons
             self._idle = self._idle + 1 if plan.is_idle and is_free else 0
+            self._idle_horizon = plan.horizon
             ended = await self._ending(engine, plan, belief, without)
             gives_up = ended is not None and ended.ending in _GIVES_UP
             if gives_up and await self._passed_over.are_searched_anew():
