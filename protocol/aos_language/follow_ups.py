@@ -50,7 +50,7 @@ def told_once(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
             case "AOS201":
                 return lines[one.span.file, one.span.line] is not one
         is_of_partial = any(_declares_for(file, one.span.file) for file in partial)
-        return one.code in _NEEDS_DECLARATION and is_of_partial and not _has_near_name(one)
+        return one.code in _NEEDS_DECLARATION and is_of_partial and one.mend is None
 
     groups: dict[Hashable, list[Diagnostic]] = {}
     for number, one in enumerate(found):
@@ -79,10 +79,6 @@ def _declares_for(file: str, user: str) -> bool:
     JSON document does not say what it is.
     """
     return file.endswith((".ef", ".lf", ".json")) or PurePath(file).stem == PurePath(user).stem
-
-
-def _has_near_name(one: Diagnostic) -> bool:
-    return one.mend is not None
 
 
 def _with_places(first: Diagnostic, others: list[Span]) -> Diagnostic:

@@ -111,7 +111,7 @@ class _Building:
         number = len(self.nodes)
         self._known[key] = number
         self._by_plan.setdefault(plan, number)
-        self.nodes.append(_Node(self._region(belief), belief, action, plan, reach, {}))
+        self.nodes.append(_Node(int(self._region_of[belief > 0].max()), belief, action, plan, reach, {}))
         heapq.heappush(self._waiting, (-reach, number))
         return number
 
@@ -127,9 +127,6 @@ class _Building:
                     best, best_value = (first + top, int(region.actions[top])), float(values[top])
             first += len(region.actions)
         return best
-
-    def _region(self, belief: Floats) -> int:
-        return int(self._region_of[belief > 0].max())
 
     def outcomes_of(self, number: int) -> _NodeOutcomes:
         """Returns the outcomes of a finished node."""

@@ -119,7 +119,7 @@ class ModuleNames:
             if not imported.module:
                 whole[text] = self._snippets.marks.line(f"import {text}", origin)
                 continue
-            stand_ins = [_stand_in(name, imported.module) for name in names]
+            stand_ins = [f"{name} = stand_in({literal(name)}, {literal(imported.module)})" for name in names]
             load = self._snippets.marks.line(f"    from {imported.module} import {text}", origin)
             parts[f"{imported.module} {text}"] = ImportPart(load, tuple(stand_ins) or ("pass",))
             if not names:
@@ -172,10 +172,6 @@ class ModuleNames:
         if self._low_level is not None:
             yield from ((type.name, type.span) for type in self._low_level.types)
             yield from ((constant.name, constant.span) for constant in self._low_level.constants)
-
-
-def _stand_in(name: str, module: str) -> str:
-    return f"{name} = stand_in({literal(name)}, {literal(module)})"
 
 
 def _is_usable(name: str) -> bool:

@@ -179,12 +179,8 @@ def _in_place_of_each_other(cpp: Cpp, code: str) -> Iterator[tuple[Mention, Ment
 
 def _key(path: tuple[str, ...]) -> tuple[str, int]:
     """The name of a variable or field at the end of a path, and the level of what is indexed there."""
-    last = _last_name(path)
+    last = max(index for index, part in enumerate(path) if part != "[]")
     return path[last], len(path) - last - 1
-
-
-def _last_name(path: tuple[str, ...]) -> int:
-    return max(index for index, part in enumerate(path) if part != "[]")
 
 
 def _list_lengths(text: str) -> list[int]:

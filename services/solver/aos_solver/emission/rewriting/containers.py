@@ -65,7 +65,7 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
                 yield reference.start(1), reference.end(1), "auto"
         elif declaration.type.endswith("*"):
             pointer = _CONTAINER_POINTER.search(before)
-            if pointer is not None and _mentions_state(cpp, declaration):
+            if pointer is not None and _holds(declaration, _places_of_state(cpp)):
                 yield pointer.start(1), pointer.end(1), "auto"
         elif declaration.kind is DeclarationKind.VARIABLE and declaration.initial is not None:
             vector = _VECTOR.search(before)
@@ -91,11 +91,6 @@ def _is_plain_lambda(cpp: Cpp, declaration: Declaration) -> bool:
     reads = (Access.CALL, Access.READ)
     is_called = all(use.access in reads and use.extent.start > initial.end for use in uses)
     return is_called and cpp.code.startswith("[", initial.start)
-
-
-def _mentions_state(cpp: Cpp, declaration: Declaration) -> bool:
-    """Returns whether the state stands anywhere in what a variable starts with."""
-    return _holds(declaration, _places_of_state(cpp))
 
 
 def _holds(declaration: Declaration, places: set[int]) -> bool:
