@@ -3,18 +3,20 @@
 import asyncio
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated, NamedTuple, TypeVar
 
 import typer
 
 from aos_deploy.bundles.engine import engine_of_bundle
 from aos_deploy.deployment.constraints import constraint_of_option
-from aos_deploy.deployment.mission_values import values_of_options
+from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.deployment.parts import MAX_COUNT, MAX_SEED
 from aos_deploy.options import seconds
 from aos_protocol.documents import MAX_HORIZON
 from aos_solver.building.build import BuildKind
 from aos_solver.child.engine import Engine, Planner
+from aos_solver.child.search import Search
+from aos_solver.offline.following import following
 
 T = TypeVar("T")
 
@@ -25,42 +27,65 @@ Bundle = Annotated[
         help="A directory of documents; or a deploy file, for its bundles, constraints and values together",
     ),
 ]
-Simulations = Annotated[
-    int, typer.Option(min=1, max=MAX_COUNT, help="Planning budget of a decision, in simulations")
-]
-Time = Annotated[float | None, seconds("--time", least=0.001, help="Planning budget in seconds, instead")]
-Horizon = Annotated[
-    int | None,
-    typer.Option(min=1, max=MAX_HORIZON, help="Look-ahead in decisions; else the environment document's"),
-]
-PolicyFile = Annotated[
-    Path | None, typer.Option("--policy", help="Decide by this policy of `aos solve` instead of searching")
-]
 Seed = Annotated[
     int, typer.Option(min=0, max=MAX_SEED, help="The same seed and simulations give the same result")
 ]
-PlannerName = Annotated[
-    Planner, typer.Option("--planner", help="How to search; with auto what fits the model and the budget")
-]
-Threads = Annotated[int, typer.Option(min=1, max=32, help="Threads that search; for POMCP")]
-Never = Annotated[
-    list[str] | None,
-    typer.Option("--never", metavar="P:EXPRESSION", help="A constraint: no more probable than P; repeatable"),
-]
+
+
+class SearchOptions(NamedTuple):
+    """The search for a decision, or the policy that it follows."""
+
+    simulations: Annotated[
+        int, typer.Option(min=1, max=MAX_COUNT, help="Planning budget of a decision, in simulations")
+    ] = 100_000
+    time_s: Annotated[
+        float | None, seconds("--time", least=0.001, help="Planning budget in seconds, instead")
+    ] = None
+    horizon: Annotated[
+        int | None,
+        typer.Option(min=1, max=MAX_HORIZON, help="Look-ahead in decisions; else the environment document's"),
+    ] = None
+    seed: Seed = 1
+    planner: Annotated[
+        Planner, typer.Option("--planner", help="How to search; with auto what fits the model and the budget")
+    ] = "auto"
+    threads: Annotated[int, typer.Option(min=1, max=32, help="Threads that search; for POMCP")] = 1
+    policy: Annotated[
+        Path | None,
+        typer.Option("--policy", help="Decide by this policy of `aos solve` instead of searching"),
+    ] = None
+
+    @property
+    def search(self) -> Search:
+        """The search; PlanningError where there is a policy that cannot be read."""
+        fields = self._asdict()
+        policy = fields.pop("policy")
+        return following(Search(**fields), policy)
+
+
+class GivenOptions(NamedTuple):
+    """The constraints and values that a mission has beside the documents."""
+
+    never: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--never", metavar="P:EXPRESSION", help="A constraint: no more probable than P; repeatable"
+        ),
+    ] = None
+    set_values: SetValues = None
 
 
 def with_engine(
     bundle: Path,
     seed: int,
+    given: GivenOptions,
     ask: Callable[[Engine], Awaitable[T]],
     *,
     kind: BuildKind = "quick",
-    never: list[str] | None = None,
-    set_values: list[str] | None = None,
 ) -> T:
-    """Returns what `ask` makes of the bundle's engine, for missions with these constraints and values."""
-    constraints = [constraint_of_option(text) for text in never or ()]
-    values = values_of_options(set_values)
+    """Returns what `ask` makes of the bundle's engine, for missions that are given this."""
+    constraints = [constraint_of_option(text) for text in given.never or ()]
+    values = values_of_options(given.set_values)
 
     async def run() -> T:
         async with engine_of_bundle(

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import functools
-import inspect
 from collections.abc import Awaitable, Callable
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, get_type_hints
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from aos_deploy.options import Connect, Robot, Run, Runs
 from aos_deploy.runs.living import living_run
@@ -55,24 +53,3 @@ class System(NamedTuple):
                 return await work(client)
 
         return asyncio.run(inside())
-
-
-def on_system(command: Callable[..., None]) -> Callable[..., None]:
-    """A command with the options of `System` in place of its parameter `system`."""
-    hints = get_type_hints(System, include_extras=True)
-    options = [
-        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hints[name])
-        for name, default in System._field_defaults.items()
-    ]
-
-    @functools.wraps(command)
-    def with_options(**given: Any) -> None:
-        system = System(**{option.name: given.pop(option.name) for option in options})
-        command(system=system, **given)
-
-    parameters: list[inspect.Parameter] = []
-    signature = inspect.signature(command, eval_str=True)
-    for own in signature.parameters.values():
-        parameters += options if own.name == "system" else [own.replace(kind=inspect.Parameter.KEYWORD_ONLY)]
-    with_options.__dict__["__signature__"] = signature.replace(parameters=parameters)
-    return with_options

@@ -8,9 +8,10 @@ import typer
 from aos_deploy.bundles.files import refusal
 from aos_deploy.commands.documents import Folder
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.marked_commands import grouped
 from aos_deploy.options import AsJson
 from aos_deploy.printing import print_diagnostics, print_json, time_text
-from aos_deploy.running_system import System, on_system
+from aos_deploy.running_system import System
 from aos_deploy.views.lines import changes_text
 from aos_language.load import read_bundle_files
 from aos_language.outline import outline
@@ -30,7 +31,7 @@ OneProject = Annotated[str, typer.Argument(help="The project; may be left out if
 
 
 @bundle_app.command(epilog="Example: aos bundle push deploy/bundles/armadillo-finer")
-@on_system
+@grouped
 def push(system: System, path: Folder, as_json: AsJson = False) -> None:
     """Send a bundle to the registry.
 
@@ -58,7 +59,7 @@ def push(system: System, path: Folder, as_json: AsJson = False) -> None:
 
 
 @bundle_app.command("list", epilog="Example: aos bundle list")
-@on_system
+@grouped
 def list_projects(system: System, as_json: AsJson = False) -> None:
     """List the projects that the registry holds, with their skills."""
     catalogue = system.do(lambda aos: aos.catalogue())
@@ -74,7 +75,7 @@ def list_projects(system: System, as_json: AsJson = False) -> None:
 
 
 @bundle_app.command(epilog="Example: aos bundle show armadillo")
-@on_system
+@grouped
 def show(
     system: System,
     project: OneProject = "",
@@ -93,7 +94,7 @@ def show(
 
 
 @bundle_app.command(epilog="Example: aos bundle history armadillo")
-@on_system
+@grouped
 def history(system: System, project: OneProject = "", as_json: AsJson = False) -> None:
     """List a project's revisions.
 
@@ -112,7 +113,7 @@ def history(system: System, project: OneProject = "", as_json: AsJson = False) -
 
 
 @bundle_app.command("rm", epilog="Example: aos bundle rm armadillo observe_holding")
-@on_system
+@grouped
 def remove(
     system: System,
     project: Annotated[str, typer.Argument(help="The project")],

@@ -11,7 +11,7 @@ import typer
 from aos_deploy.marked_commands import command
 from aos_deploy.options import Mission
 from aos_deploy.printing import from_here
-from aos_deploy.running_system import System, on_system
+from aos_deploy.running_system import System
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.living import chosen_run
 from aos_deploy.views.lines import lines_of, on_one_line
@@ -31,7 +31,6 @@ _SOLVER_S = 15.0
 
 
 @command("Example: aos decisions --json | jq 'select(.outcome).action'")
-@on_system
 def decisions(
     system: System,
     as_json: Annotated[

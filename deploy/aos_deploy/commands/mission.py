@@ -12,10 +12,10 @@ import typer
 from aos_deploy.commands import steering
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.exit_codes import EXIT_CODES_TEXT, exit_code_of_ending
-from aos_deploy.marked_commands import add_commands
+from aos_deploy.marked_commands import add_commands, grouped
 from aos_deploy.options import AsJson
 from aos_deploy.printing import count, print_json
-from aos_deploy.running_system import System, on_system
+from aos_deploy.running_system import System
 from aos_deploy.runs.living import chosen_run
 from aos_protocol.messages import MissionEntry, MissionState
 
@@ -47,7 +47,7 @@ Idle = Annotated[
     epilog="Example: aos mission start --belief keep --wait. With --wait it exits as aos-up does. "
     + EXIT_CODES_TEXT
 )
-@on_system
+@grouped
 def start(
     system: System,
     belief: Belief = "initial",
@@ -95,7 +95,7 @@ def start(
 
 
 @mission_app.command(epilog="Example: aos mission stop")
-@on_system
+@grouped
 def stop(system: System, as_json: AsJson = False) -> None:
     """Cancel what moves, and end the mission.
 
@@ -119,7 +119,7 @@ def stop(system: System, as_json: AsJson = False) -> None:
 
 
 @mission_app.command("list", epilog="Example: aos mission list --json")
-@on_system
+@grouped
 def list_missions(system: System, as_json: AsJson = False) -> None:
     """List the missions of a system, also of one that is over."""
     entries = _entries(system)

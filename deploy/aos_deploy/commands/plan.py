@@ -27,7 +27,6 @@ from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.rules.failures import Failures
 from aos_solver.mission.rules.terms import Terms
-from aos_solver.offline.following import following
 from aos_solver.study.supposing import believe_all
 
 RATE_REPETITIONS = 10
@@ -49,15 +48,8 @@ class Decision(msgspec.Struct):
 @command("Example: aos plan deploy/bundles/armadillo-finer --exact --horizon 8")
 def plan(
     bundle: planning_options.Bundle,
-    simulations: planning_options.Simulations = 100_000,
-    time_s: planning_options.Time = None,
-    horizon: planning_options.Horizon = None,
-    seed: planning_options.Seed = 1,
-    planner: planning_options.PlannerName = "auto",
-    threads: planning_options.Threads = 1,
-    policy: planning_options.PolicyFile = None,
-    never: planning_options.Never = None,
-    set_values: SetValues = None,
+    deciding: planning_options.SearchOptions,
+    given: planning_options.GivenOptions,
     belief: Annotated[
         list[str] | None,
         typer.Option(
@@ -77,12 +69,9 @@ def plan(
     are kept: --belief "tiger_behind=Left:0.9" for deploy/bundles/bench/tiger.
     """
     supposed = _suppositions(belief or ())
-    if exact and policy is not None:
+    if exact and deciding.policy is not None:
         raise typer.BadParameter("it excludes --exact", param_hint="--policy")
-    search = Search(
-        simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner, threads=threads
-    )
-    search = following(search, policy)
+    search = deciding.search
 
     async def decide(engine: Engine) -> Decision:
         with waiting("deciding") as tell:
@@ -92,11 +81,11 @@ def plan(
             if remark := remark_on_start(await engine.summary()):
                 typer.echo(f"aos: {remark}", err=True)
             if exact:
-                return await _exact_decision(engine, horizon)
+                return await _exact_decision(engine, deciding.horizon)
             return await _searched_decision(engine, search)
 
-    decision = planning_options.with_engine(bundle, seed, decide, never=never, set_values=set_values)
-    title = "exact" if exact else "0 simulations" if policy is None else "by the policy"
+    decision = planning_options.with_engine(bundle, deciding.seed, given, decide)
+    title = "exact" if exact else "0 simulations" if deciding.policy is None else "by the policy"
     show(decision, as_json, lambda made: _print_decision(made, title))
 
 
@@ -186,7 +175,8 @@ def rate(
         counts = [await engine.rate(length_s, seed + turn) for turn in range(RATE_REPETITIONS)]
         return [count.samples / count.seconds for count in counts]
 
-    rates = planning_options.with_engine(bundle, seed, measure, kind="thorough", set_values=set_values)
+    given = planning_options.GivenOptions(set_values=set_values)
+    rates = planning_options.with_engine(bundle, seed, given, measure, kind="thorough")
     result = Rate(statistics.fmean(rates), statistics.stdev(rates), RATE_REPETITIONS, length_s)
     told = f"{result.mean:,.0f} samples/s (sd {result.sd:,.0f}, {RATE_REPETITIONS} x {length_s:g} s)"
     show(result, as_json, lambda _: typer.echo(told))

@@ -8,10 +8,10 @@ from typing import Annotated, Any
 import msgspec
 import typer
 
-from aos_deploy.marked_commands import command
+from aos_deploy.marked_commands import command, grouped
 from aos_deploy.options import AsJson, seconds
 from aos_deploy.printing import print_json
-from aos_deploy.running_system import System, on_system
+from aos_deploy.running_system import System
 from aos_protocol import messages
 from aos_protocol.documents import LocalSource, Project
 from aos_protocol.errors import AosError, DeployError, SkillError
@@ -34,7 +34,7 @@ skill_app = typer.Typer(
 
 
 @skill_app.command("list", epilog="Example: aos skill list --json")
-@on_system
+@grouped
 def list_skills(system: System, as_json: AsJson = False) -> None:
     """List the skills with their paths, and who serves them."""
 
@@ -52,7 +52,7 @@ def list_skills(system: System, as_json: AsJson = False) -> None:
 
 
 @skill_app.command(epilog="Example: aos skill info pick")
-@on_system
+@grouped
 def info(
     system: System,
     name: Annotated[str, typer.Argument(help="The skill, or its path")],
@@ -82,7 +82,7 @@ def info(
 
 
 @skill_app.command(epilog="Example: aos skill call /navigate x=1.5 y=0 yaw=0 --anyway")
-@on_system
+@grouped
 def call(
     system: System,
     name: Annotated[str, typer.Argument(metavar="PATH", help="The path that somebody serves, or a skill")],
@@ -123,7 +123,7 @@ def call(
 
 
 @skill_app.command(epilog="Example: aos skill cancel")
-@on_system
+@grouped
 def cancel(
     system: System,
     name: Annotated[
@@ -148,7 +148,6 @@ def cancel(
 
 
 @command("Example: aos resume")
-@on_system
 def resume(system: System) -> None:
     """Go on with a mission that holds."""
 

@@ -11,7 +11,7 @@ import typer
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson
 from aos_deploy.printing import count, show
-from aos_deploy.running_system import System, on_system
+from aos_deploy.running_system import System
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import MissionState
 
@@ -22,7 +22,6 @@ Name = Annotated[str, typer.Argument(metavar="NAME", help="A skill, or a grounde
 
 
 @command("Example: aos mission hold")
-@on_system
 def hold(system: System, as_json: AsJson = False) -> None:
     """Decide nothing more, until `step`, `resume` or `do`.
 
@@ -32,21 +31,18 @@ def hold(system: System, as_json: AsJson = False) -> None:
 
 
 @command("Example: aos mission step")
-@on_system
 def step(system: System, as_json: AsJson = False) -> None:
     """Make one more decision, carry it out, and hold then."""
     _steer(system, lambda aos: aos.step(), as_json, lambda state: "one more decision, then it holds")
 
 
 @command("Example: aos mission resume")
-@on_system
 def resume(system: System, as_json: AsJson = False) -> None:
     """Go on with a mission, whoever or whatever holds it."""
     _steer(system, lambda aos: aos.resume(), as_json, lambda state: "the mission goes on")
 
 
 @command("Example: aos mission do 'navigate(destination=corridor)'", "do")
-@on_system
 def act(
     system: System,
     action: Annotated[
@@ -64,7 +60,6 @@ def act(
 
 
 @command("Example: aos mission script docs/examples/actions.txt")
-@on_system
 def script(
     system: System,
     file: Annotated[Path, typer.Argument(metavar="FILE", help="One action a line; # begins a comment")],
@@ -81,7 +76,6 @@ def script(
 
 
 @command("Example: aos mission leave-out pick", "leave-out")
-@on_system
 def leave_out(system: System, name: Name, as_json: AsJson = False) -> None:
     """Decide without a skill or a grounded action.
 
@@ -91,7 +85,6 @@ def leave_out(system: System, name: Name, as_json: AsJson = False) -> None:
 
 
 @command("Example: aos mission take-back pick", "take-back")
-@on_system
 def take_back(system: System, name: Name, as_json: AsJson = False) -> None:
     """Decide with what was left out again."""
     _steer(system, lambda aos: aos.take_back(name), as_json, _without)

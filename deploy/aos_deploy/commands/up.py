@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, NamedTuple, NoReturn
 
 import msgspec
 import typer
@@ -27,62 +28,59 @@ _EPILOG = (
 )
 
 
-DeployFile = Annotated[
-    Path | None, typer.Argument(metavar="DEPLOY", help="The deploy file; with --resume a run directory")
-]
-Resume = Annotated[
-    bool,
-    typer.Option(
-        "--resume", help="Go on with a run whose aos-up has died, by default with the last one in ./runs"
-    ),
-]
-Seed = Annotated[
-    int | None,
-    typer.Option(min=0, max=MAX_SEED, help="Seed of the planner and of the world, in place of the file's"),
-]
-Listen = Annotated[
-    str | None, typer.Option(metavar="ENDPOINT", help="Where the bus listens; port 0 takes any free one")
-]
-Runs = Annotated[
-    Path | None, typer.Option(metavar="DIR", help="Where the run directory goes", file_okay=False)
-]
-PlayedByModel = Annotated[
-    bool, typer.Option("--model", help="Every skill is played by its own document; no robot is needed")
-]
-Stay = Annotated[
-    bool,
-    typer.Option(
-        "--stay",
-        help="Go on after the mission, and wait for `aos mission start`, until Ctrl-C: its exit code is 130 "
-        "while a mission runs, else 0",
-    ),
-]
-Page = Annotated[bool, typer.Option("--page", help="Print the address of the mission's page; see aos serve")]
-Plain = Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")]
-JsonLines = Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")]
-Serve = Annotated[
-    str | None,
-    typer.Option(
-        metavar="KIND",
-        help="Run no mission: serve the skills and topics to others, as ros2, dds or ros1, until Ctrl-C",
-    ),
-]
+class UpOptions(NamedTuple):
+    """The deploy file, or the run that goes on, and what is said otherwise than there."""
+
+    deploy: Annotated[
+        Path | None, typer.Argument(metavar="DEPLOY", help="The deploy file; with --resume a run directory")
+    ] = None
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume", help="Go on with a run whose aos-up has died, by default with the last one in ./runs"
+        ),
+    ] = False
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            min=0, max=MAX_SEED, help="Seed of the planner and of the world, in place of the file's"
+        ),
+    ] = None
+    listen: Annotated[
+        str | None, typer.Option(metavar="ENDPOINT", help="Where the bus listens; port 0 takes any free one")
+    ] = None
+    runs: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where the run directory goes", file_okay=False)
+    ] = None
+    set_values: SetValues = None
+    model: Annotated[
+        bool, typer.Option("--model", help="Every skill is played by its own document; no robot is needed")
+    ] = False
+    serve: Annotated[
+        str | None,
+        typer.Option(
+            metavar="KIND",
+            help="Run no mission: serve the skills and topics to others, as ros2, dds or ros1, until Ctrl-C",
+        ),
+    ] = None
+    stay: Annotated[
+        bool,
+        typer.Option(
+            "--stay",
+            help="Go on after the mission, and wait for `aos mission start`, until Ctrl-C: its exit code is "
+            "130 while a mission runs, else 0",
+        ),
+    ] = False
+    page: Annotated[
+        bool, typer.Option("--page", help="Print the address of the mission's page; see aos serve")
+    ] = False
 
 
 @command(_EPILOG, cls=NumbersToldCommand, context_settings=HELP_NAMES)
 def up(
-    deploy: DeployFile = None,
-    resume: Resume = False,
-    seed: Seed = None,
-    listen: Listen = None,
-    runs: Runs = None,
-    set_values: SetValues = None,
-    model: PlayedByModel = False,
-    serve: Serve = None,
-    stay: Stay = False,
-    page: Page = False,
-    plain: Plain = False,
-    as_json: JsonLines = False,
+    options: UpOptions,
+    plain: Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")] = False,
     version: Version = False,
     trust_documents: TrustDocuments = False,
 ) -> None:
@@ -106,16 +104,18 @@ def up(
     from aos_deploy.views import make_view
     from aos_runtime.clock import SystemClock
 
-    _refuse_beside_serve(serve, stay=stay, page=page)
-    if resume:
-        flags = {"set": set_values or None, "model": model or None, "stay": stay or None}
-        _refuse_beside_resume(seed=seed, listen=listen, runs=runs, serve=serve, **flags)
-        deployment, taken_up = take_up(deploy or RunDirectory.latest(runs_here()).path)
-    elif deploy is None:
+    serve = options.serve
+    if serve is not None:
+        _refuse(options, ("stay", "page"), "no mission runs that others could follow")
+    if options.resume:
+        fixed = ("seed", "listen", "runs", "serve", "set", "model", "stay")
+        _refuse(options, fixed, "a run that goes on has what it was started with")
+        deployment, taken_up = take_up(options.deploy or RunDirectory.latest(runs_here()).path)
+    elif options.deploy is None:
         raise typer.BadParameter("name the deploy file, or use --resume", param_hint="DEPLOY")
     else:
-        deployment, taken_up = read_deploy_file(deploy), None
-    deployment = _with_options(deployment, seed, listen, runs, set_values, is_to_stay=stay, is_played=model)
+        deployment, taken_up = read_deploy_file(options.deploy), None
+    deployment = _with_options(deployment, options)
     check_sandbox(deployment)
     check_needed_here(deployment)
     is_terminal = sys.stdout is not None and sys.stdout.isatty()  # None where it was closed before.
@@ -126,7 +126,9 @@ def up(
         mission: MissionRun | ServeRun = ServeRun(deployment, serve, report, clock)
     else:
         kind = SystemRun if deployment.file.stay else MissionRun
-        mission = kind(deployment, report, clock, taken_up=taken_up, is_played=model, shows_page=page)
+        mission = kind(
+            deployment, report, clock, taken_up=taken_up, is_played=options.model, shows_page=options.page
+        )
     with view:
         code = asyncio.run(run_until_interrupted(mission, is_unread))
     _end(mission.error, code)
@@ -139,51 +141,35 @@ def _end(error: AosError | None, code: int) -> NoReturn:
     raise typer.Exit(code)
 
 
-def _refuse_beside_resume(**options: object) -> None:
-    """BadParameter for an option that a run which goes on has already."""
-    given = [f"--{name}" for name, value in options.items() if value is not None]
+def _refuse(options: UpOptions, names: Iterable[str], why: str) -> None:
+    """BadParameter where one of these options is given."""
+    values = options._asdict() | {"set": options.set_values or None}
+    given = [f"--{name}" for name in names if values[name] is not None and values[name] is not False]
     if given:
-        text = "a run that goes on has what it was started with"
-        raise typer.BadParameter(text, param_hint=", ".join(given))
+        raise typer.BadParameter(why, param_hint=", ".join(given))
 
 
 def _title(deployment: Deployment) -> str:
     return f"{deployment.file.robot} · {deployment.path.name}"
 
 
-def _refuse_beside_serve(serve: str | None, **options: bool) -> None:
-    """BadParameter for an option that needs a mission, where none runs."""
-    given = [f"--{name}" for name, is_given in options.items() if is_given]
-    if given and serve is not None:
-        raise typer.BadParameter("no mission runs that others could follow", param_hint=", ".join(given))
-
-
-def _with_options(
-    deployment: Deployment,
-    seed: int | None,
-    listen: str | None,
-    runs: Path | None,
-    set_values: list[str] | None,
-    *,
-    is_to_stay: bool,
-    is_played: bool,
-) -> Deployment:
+def _with_options(deployment: Deployment, options: UpOptions) -> Deployment:
     """The deployment with what the command says otherwise; of two values for a parameter the last counts."""
     from aos_deploy.deployment.mission_values import values_of_options
     from aos_deploy.deployment.reading import check_endpoint, without_a_robot
 
-    file = deployment.file
-    if is_to_stay:
+    file, solver = deployment.file, deployment.file.solver
+    if options.stay:
         file = msgspec.structs.replace(file, stay=True)
-    if seed is not None:
-        file = msgspec.structs.replace(file, solver=msgspec.structs.replace(file.solver, seed=seed))
-    if listen is not None:
-        check_endpoint(listen)
-        file = msgspec.structs.replace(file, bus=msgspec.structs.replace(file.bus, listen=listen))
+    if options.seed is not None:
+        file = msgspec.structs.replace(file, solver=msgspec.structs.replace(solver, seed=options.seed))
+    if options.listen is not None:
+        check_endpoint(options.listen)
+        file = msgspec.structs.replace(file, bus=msgspec.structs.replace(file.bus, listen=options.listen))
     deployment = msgspec.structs.replace(
         deployment,
         file=file,
-        mission_values=(*deployment.mission_values, *values_of_options(set_values)),
-        runs=runs.resolve() if runs is not None else deployment.runs,
+        mission_values=(*deployment.mission_values, *values_of_options(options.set_values)),
+        runs=options.runs.resolve() if options.runs is not None else deployment.runs,
     )
-    return without_a_robot(deployment) if is_played else deployment
+    return without_a_robot(deployment) if options.model else deployment

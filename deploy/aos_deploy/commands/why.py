@@ -2,14 +2,14 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable
-from typing import Annotated, TypeVar
+from typing import Annotated, NamedTuple, TypeVar
 
 import typer
 
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, Mission, TrustDocuments
 from aos_deploy.printing import show
-from aos_deploy.running_system import System, on_system
+from aos_deploy.running_system import System
 from aos_deploy.runs.living import chosen_run
 from aos_deploy.runs.studied import StudiedRun
 from aos_deploy.terminal import waiting
@@ -25,7 +25,6 @@ Step = Annotated[int, typer.Argument(min=0, metavar="STEP", help="The decision's
 
 
 @command('Example: aos why 3 --instead "navigate(destination=corridor)"')
-@on_system
 def why(
     system: System,
     step: Step = 0,
@@ -53,25 +52,30 @@ def why(
     show(found, as_json, lambda why: typer.echo("\n".join(why_lines(why))))
 
 
-@command('Example: aos whatif 3 --believe "holding_can=true:0.5"')
-@on_system
-def whatif(
-    system: System,
-    step: Step = 0,
+class Otherwise(NamedTuple):
+    """The decision, and the circumstances that are taken to be other ones."""
+
+    step: Step = 0
     forbid: Annotated[
         list[str] | None, typer.Option("--forbid", metavar="ACTION", help="Not this action now; repeatable")
-    ] = None,
+    ] = None
     without: Annotated[
         list[str] | None, typer.Option("--without", metavar="SKILL", help="Never this skill; repeatable")
-    ] = None,
+    ] = None
     believe: Annotated[
         list[str] | None,
         typer.Option("--believe", metavar="VAR=VALUE:P", help="Another probability; repeatable"),
-    ] = None,
+    ] = None
     change: Annotated[
         list[str] | None,
         typer.Option("--change", metavar="FILE:LINE=NUMBER", help="Another number in a document; repeatable"),
-    ] = None,
+    ] = None
+
+
+@command('Example: aos whatif 3 --believe "holding_can=true:0.5"')
+def whatif(
+    system: System,
+    otherwise: Otherwise,
     mission: Mission = None,
     as_json: AsJson = False,
     trust_documents: TrustDocuments = False,
@@ -82,9 +86,8 @@ def whatif(
     inside (Jeffrey's rule). With another number in a document the model is
     compiled, and replays what was observed before the step.
     """
-    query = WhatIfQuery(
-        step, tuple(forbid or ()), tuple(without or ()), tuple(believe or ()), tuple(change or ())
-    )
+    forbid, without, believe, change = (tuple(texts or ()) for texts in otherwise[1:])
+    query = WhatIfQuery(otherwise.step, forbid, without, believe, change)
     found = _found(
         system, mission, lambda aos: aos.what_if(query, mission=mission), lambda study: study.what_if(query)
     )

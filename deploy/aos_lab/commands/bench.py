@@ -2,7 +2,7 @@
 
 import asyncio
 from pathlib import Path
-from typing import Annotated, get_args
+from typing import Annotated, NamedTuple, get_args
 
 import typer
 
@@ -20,33 +20,52 @@ PLANNERS: tuple[Planner, ...] = get_args(Planner)
 
 _QUICK_RUNS = 4
 
-Time = Annotated[float, seconds("--time", least=0.001, help="Processor seconds of a decision")]
+Quick = Annotated[bool, typer.Option("--quick", help="Short measurements, and 4 missions a return")]
 
 
-@command("Example: aos bench tiger rocksample-7-8 --quick")
-def bench(
+class BenchOptions(NamedTuple):
+    """The problems, and what is measured of them."""
+
     names: Annotated[
         list[str] | None,
         typer.Argument(
             metavar="[NAME]...",
             help=f"Of {', '.join(problem_names())}, or a bundle's folder; all the named if left out",
         ),
-    ] = None,
+    ] = None
     metric: Annotated[
         list[str] | None, typer.Option(help=f"Of {', '.join(METRICS)}, repeatable; else all")
-    ] = None,
+    ] = None
     runs: Annotated[
         int | None, typer.Option(min=1, help="Missions for a return; else 50 to 200, as the problem needs")
-    ] = None,
-    time_s: Time = 0.1,
+    ] = None
+    time_s: Annotated[float, seconds("--time", least=0.001, help="Processor seconds of a decision")] = 0.1
     planner: Annotated[
         list[str] | None, typer.Option(help=f"Of {', '.join(PLANNERS)}, repeatable; else auto")
-    ] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Missions at a time")] = 1,
-    seed: Annotated[int, typer.Option(min=0, help="Of every random draw")] = 1,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="Short measurements, and 4 missions a return")
-    ] = False,
+    ] = None
+    jobs: Annotated[int, typer.Option(min=1, help="Missions at a time")] = 1
+    seed: Annotated[int, typer.Option(min=0, help="Of every random draw")] = 1
+    quick: Quick = False
+
+    @property
+    def effort(self) -> Effort:
+        """The extent of each measurement; BadParameter for a name that is none."""
+        return Effort(
+            metrics=tuple(_known(self.metric or [], METRICS, "--metric")) or METRICS,
+            repetitions=2 if self.quick else 5,
+            seconds=0.2 if self.quick else 1.0,
+            peer_simulations=500 if self.quick else 4_000,
+            runs=self.runs or (_QUICK_RUNS if self.quick else None),
+            budget_s=self.time_s,
+            planners=_planners(self.planner or ["auto"]),
+            jobs=self.jobs,
+            seed=self.seed,
+        )
+
+
+@command("Example: aos bench tiger rocksample-7-8 --quick")
+def bench(
+    options: BenchOptions,
     as_json: AsJson = False,
     as_markdown: Annotated[bool, typer.Option("--markdown", help="Print a table for a page")] = False,
     trust_documents: TrustDocuments = False,
@@ -56,24 +75,14 @@ def bench(
     Against hand-written C++, and against pomdp-py if it is installed. All of it
     takes an hour, with --quick some minutes.
     """
-    effort = Effort(
-        metrics=tuple(_known(metric or [], METRICS, "--metric")) or METRICS,
-        repetitions=2 if quick else 5,
-        seconds=0.2 if quick else 1.0,
-        peer_simulations=500 if quick else 4_000,
-        runs=runs or (_QUICK_RUNS if quick else None),
-        budget_s=time_s,
-        planners=_planners(planner or ["auto"]),
-        jobs=jobs,
-        seed=seed,
-    )
+    effort = options.effort
     with progress() as bar:
         task = bar.add_task("starting")
 
         def on_step(what: str) -> None:
             bar.update(task, description=what, advance=1)
 
-        suite = Suite(problems_named(_bundles_or_known(names or [])), effort, cache_dir(), on_step)
+        suite = Suite(problems_named(_bundles_or_known(options.names or [])), effort, cache_dir(), on_step)
         bar.update(task, total=suite.steps)
         report = asyncio.run(suite.run())
     if as_json:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 from rich.progress import Progress
 
+from aos_deploy.marked_commands import grouped
 from aos_deploy.options import HELP_NAMES, AsJson, TrustDocuments
 from aos_deploy.places import shipped
 from aos_deploy.printing import count, from_here, json_text, print_json
@@ -42,15 +43,29 @@ _NAME: Any = typer.Argument(
 )
 
 
-@experiment_app.command(epilog="Example: aos experiment run armadillo --seeds 20 --system-seeds 4 --jobs 2")
-def run(
-    name: Annotated[str, _NAME],
-    seeds: Annotated[int, typer.Option(min=0, help="Missions that the model plays, of each part")] = 100,
+class MissionOptions(NamedTuple):
+    """The missions of an experiment."""
+
+    seeds: Annotated[int, typer.Option(min=0, help="Missions that the model plays, of each part")] = 100
     system_seeds: Annotated[
         int, typer.Option(min=0, help="Missions of the whole system with its adapters, of each part")
-    ] = 0,
-    first_seed: Annotated[int, typer.Option(min=0, help="The seeds begin here")] = 1,
-    part: Annotated[list[str] | None, typer.Option(help="Only this part; repeatable")] = None,
+    ] = 0
+    first_seed: Annotated[int, typer.Option(min=0, help="The seeds begin here")] = 1
+    part: Annotated[list[str] | None, typer.Option(help="Only this part; repeatable")] = None
+
+    def command(self, name: str) -> str:
+        """Returns the command that runs the same missions again."""
+        command = f"aos experiment run {name} --seeds {self.seeds} --system-seeds {self.system_seeds}"
+        if self.first_seed != 1:
+            command += f" --first-seed {self.first_seed}"
+        return command + "".join(f" --part {part}" for part in self.part or ())
+
+
+@experiment_app.command(epilog="Example: aos experiment run armadillo --seeds 20 --system-seeds 4 --jobs 2")
+@grouped
+def run(
+    name: Annotated[str, _NAME],
+    missions: MissionOptions,
     jobs: Annotated[
         int | None, typer.Option(min=1, help="Missions at a time; else 1, or a cluster's processors")
     ] = None,
@@ -72,7 +87,7 @@ def run(
     intervals. A run that was interrupted goes on where it was: missions that
     are recorded are not run again, unless documents or settings have changed.
     """
-    _check_place(on, seeds, system_seeds)
+    _check_place(on, missions)
     _check_installed()
     from aos_lab.experiments.results import Results, surroundings
     from aos_lab.experiments.running import ExperimentRun
@@ -81,23 +96,24 @@ def run(
 
     path = _experiment_file(name)
     experiment = read_experiment(path)
-    unknown = set(part or ()) - set(experiment.parts)
+    parts = missions.part or list(experiment.parts)
+    unknown = set(parts) - set(experiment.parts)
     if unknown:
         known = ", ".join(experiment.parts)
         raise typer.BadParameter(f"{sorted(unknown)[0]} is none of {known}", param_hint="--part")
     folder = (out or Path("experiments") / path.stem).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     place = Place(on=on, jobs=jobs, on_progress=lambda text: typer.echo(f"aos: {text}", err=True))
-    missions = ExperimentRun(path, experiment, folder, first_seed, place)
-    names = [key for key in experiment.parts if not part or key in part]
+    played = ExperimentRun(path, experiment, folder, missions.first_seed, place)
+    names = [key for key in experiment.parts if key in parts]
     with progress() as bar, interruption_among_missions(bar, are_kept=True):
-        by: dict[Player, int] = {"model": seeds, "system": system_seeds}
-        results = tuple(missions.results(names, by, partial(_begin, bar)))
+        by: dict[Player, int] = {"model": missions.seeds, "system": missions.system_seeds}
+        results = tuple(played.results(names, by, partial(_begin, bar)))
     whole = Results(
         name=path.stem,
         title=experiment.title,
         about=experiment.about,
-        command=_command(name, seeds, system_seeds, first_seed, part or ()),
+        command=missions.command(name),
         surroundings=surroundings(),
         parts=results,
     )
@@ -186,24 +202,16 @@ def _begin(bar: Progress, text: str, total: int) -> Callable[[], None]:
     return partial(bar.advance, bar.add_task(text, total=total))
 
 
-def _command(name: str, seeds: int, system_seeds: int, first_seed: int, parts: Sequence[str]) -> str:
-    """Returns the command that runs the same missions again."""
-    command = f"aos experiment run {name} --seeds {seeds} --system-seeds {system_seeds}"
-    if first_seed != 1:
-        command += f" --first-seed {first_seed}"
-    return command + "".join(f" --part {part}" for part in parts)
-
-
-def _check_place(on: str, seeds: int, system_seeds: int) -> None:
+def _check_place(on: str, missions: MissionOptions) -> None:
     """BadParameter where missions cannot be run."""
-    if not seeds and not system_seeds:
+    if not missions.seeds and not missions.system_seeds:
         raise typer.BadParameter("no missions: give --seeds or --system-seeds", param_hint="--seeds")
     if on == "local":
         return
     if on != "ray" and not on.startswith("ray://"):
         hint = "local, ray://HOST:PORT, or ray for a Ray of its own on this machine"
         raise typer.BadParameter(f"{on!r} is none of {hint}", param_hint="--on")
-    if system_seeds:
+    if missions.system_seeds:
         raise typer.BadParameter(
             "missions of the whole system are run here: leave --on out", param_hint="--on"
         )

@@ -6,13 +6,12 @@ import statistics
 from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import msgspec
 import typer
 
 from aos_deploy import planning_options
-from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, finite
@@ -23,7 +22,6 @@ from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
-from aos_solver.offline.following import following
 
 if TYPE_CHECKING:
     from aos_lab.problem_missions import ProblemPlayer
@@ -44,36 +42,35 @@ Target = Annotated[
         "with --policy, a .pomdp or .pomdpx file",
     ),
 ]
-GoalProbability = Annotated[
-    float, typer.Option(min=0.001, max=1, callback=finite, help="Ends a mission when reached")
-]
-StepLimit = Annotated[
-    int | None,
-    typer.Option(min=1, help="Ends a mission when reached; else 30, of a problem file all steps that count"),
-]
-StopBelowValue = Annotated[
-    float | None, typer.Option(callback=finite, help="Ends a mission when no action can return so much")
-]
-States = Annotated[bool, typer.Option("--states", help="Also tell the world's state at each step")]
+
+
+class MissionOptions(NamedTuple):
+    """The number of missions, and the conditions that end each."""
+
+    runs: Annotated[int, typer.Option(min=1, help="How many missions")] = 10
+    goal_probability: Annotated[
+        float, typer.Option(min=0.001, max=1, callback=finite, help="Ends a mission when reached")
+    ] = 0.9
+    step_limit: Annotated[
+        int | None,
+        typer.Option(
+            min=1, help="Ends a mission when reached; else 30, of a problem file all steps that count"
+        ),
+    ] = None
+    stop_below_value: Annotated[
+        float | None, typer.Option(callback=finite, help="Ends a mission when no action can return so much")
+    ] = None
 
 
 @command("Example: aos simulate deploy/bundles/armadillo-finer --runs 20")
 def simulate(
     bundle: Target,
-    runs: Annotated[int, typer.Option(min=1, help="How many missions")] = 10,
-    seed: planning_options.Seed = 1,
-    simulations: planning_options.Simulations = 100_000,
-    time_s: planning_options.Time = None,
-    horizon: planning_options.Horizon = None,
-    planner: planning_options.PlannerName = "auto",
-    threads: planning_options.Threads = 1,
-    policy: planning_options.PolicyFile = None,
-    never: planning_options.Never = None,
-    set_values: SetValues = None,
-    goal_probability: GoalProbability = 0.9,
-    step_limit: StepLimit = None,
-    stop_below_value: StopBelowValue = None,
-    states: States = False,
+    deciding: planning_options.SearchOptions,
+    given: planning_options.GivenOptions,
+    missions: MissionOptions,
+    states: Annotated[
+        bool, typer.Option("--states", help="Also tell the world's state at each step")
+    ] = False,
     as_json: AsJson = False,
     trust_documents: TrustDocuments = False,
 ) -> None:
@@ -86,23 +83,23 @@ def simulate(
     Ctrl-C ends it early and tells of the missions that have ended.
     """
     limits = MissionLimits(
-        goal_probability=goal_probability, step_limit=step_limit or 30, stop_below_value=stop_below_value
+        goal_probability=missions.goal_probability,
+        step_limit=missions.step_limit or 30,
+        stop_below_value=missions.stop_below_value,
     )
-    search = Search(
-        simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner, threads=threads
-    )
-
+    first, runs = deciding.seed, missions.runs
     done: list[SimulatedRun] = []
     is_problem = bundle.suffix in PROBLEM_ENDINGS and not bundle.is_dir()
     was_stopped = False
     try:
         if is_problem:
-            player = _problem_player(bundle, policy, step_limit, never=never, set=set_values)
-            _play_problem(player, range(seed, seed + runs), done, with_states=states)
+            player = _problem_player(bundle, deciding.policy, missions.step_limit, given)
+            _play_problem(player, range(first, first + runs), done, with_states=states)
         else:
-            search = following(search, policy)
-            play = partial(_play, search=search, limits=limits, runs=runs, with_states=states, done=done)
-            planning_options.with_engine(bundle, seed, play, never=never, set_values=set_values)
+            play = partial(
+                _play, search=deciding.search, limits=limits, runs=runs, with_states=states, done=done
+            )
+            planning_options.with_engine(bundle, first, given, play)
     except KeyboardInterrupt:
         was_stopped = True
     if done and as_json:
@@ -117,11 +114,11 @@ def simulate(
 
 
 def _problem_player(
-    path: Path, policy: Path | None, step_limit: int | None, **of_documents: list[str] | None
+    path: Path, policy: Path | None, step_limit: int | None, given: planning_options.GivenOptions
 ) -> ProblemPlayer:
     """The player of a problem file; BadParameter for options that documents alone have."""
-    for name, given in of_documents.items():
-        if given:
+    for name, texts in (("never", given.never), ("set", given.set_values)):
+        if texts:
             raise typer.BadParameter("a problem file has none", param_hint=f"--{name}")
     if policy is None:
         hint = f"a problem file is simulated by a policy: aos solve {path} --out FILE.policy makes it"

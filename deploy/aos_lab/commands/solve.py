@@ -8,7 +8,7 @@ import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import msgspec
 import typer
@@ -38,27 +38,6 @@ from aos_solver.offline.solver_program import build_solver
 from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, check_discount, precision_of
 from aos_solver.offline.solving import solve as solve_model
 from aos_solver.offline.stopping import with_stopping
-
-Time = Annotated[float, seconds("--time", least=0.001, help="Seconds of computing at most")]
-Precision = Annotated[
-    float | None,
-    typer.Option(
-        min=0, callback=finite, help="Enough when the bounds are so near; else 0.001, less for small rewards"
-    ),
-]
-Discount = Annotated[
-    float | None, typer.Option(min=0, max=1, callback=finite, help="Instead of the documents' own discount")
-]
-StopValue = Annotated[
-    float | None, typer.Option(callback=finite, help="To end the mission is worth so much, at any time")
-]
-Out = Annotated[
-    Path | None, typer.Option(help="Save the policy, for aos-up, plan and simulate", callback=writable)
-]
-Exports = Annotated[
-    list[Path] | None,
-    typer.Option(help="Write the model as .pomdpx or .pomdp; may be repeated", callback=all_writable),
-]
 
 _TOLD_NAMES = 12
 _GRAPH_ENDINGS = (".dot", ".svg")
@@ -104,28 +83,57 @@ class Report(msgspec.Struct):
     written: list[str]
 
 
+class SolvingOptions(NamedTuple):
+    """The model that is solved, and how far."""
+
+    time_s: Annotated[float, seconds("--time", least=0.001, help="Seconds of computing at most")] = 60.0
+    precision: Annotated[
+        float | None,
+        typer.Option(
+            min=0,
+            callback=finite,
+            help="Enough when the bounds are so near; else 0.001, less for small rewards",
+        ),
+    ] = None
+    discount: Annotated[
+        float | None,
+        typer.Option(min=0, max=1, callback=finite, help="Instead of the documents' own discount"),
+    ] = None
+    stop_value: Annotated[
+        float | None, typer.Option(callback=finite, help="To end the mission is worth so much, at any time")
+    ] = None
+    states: Annotated[int, typer.Option(min=1, max=MAX_COUNT, help="Give up beyond so many states")] = (
+        MAX_STATES
+    )
+
+
+class OutputOptions(NamedTuple):
+    """The files that are written."""
+
+    out: Annotated[
+        Path | None, typer.Option(help="Save the policy, for aos-up, plan and simulate", callback=writable)
+    ] = None
+    export: Annotated[
+        list[Path] | None,
+        typer.Option(help="Write the model as .pomdpx or .pomdp; may be repeated", callback=all_writable),
+    ] = None
+    graph: Annotated[
+        Path | None, typer.Option(help="Draw the policy: .dot, or .svg by Graphviz", callback=writable)
+    ] = None
+    header: Annotated[
+        Path | None,
+        typer.Option("--c-header", help="Write the policy as C that needs nothing else", callback=writable),
+    ] = None
+    nodes: Annotated[int, typer.Option(min=1, max=50_000, help="Size of the drawing and of the C")] = 200
+
+
 @command("Example: aos solve deploy/bundles/armadillo-finer --out armadillo.policy")
 def solve(
     target: Annotated[
         Path, typer.Argument(metavar="TARGET", help="A bundle, a deploy, .pomdpx or .pomdp file")
     ],
-    time_s: Time = 60.0,
-    precision: Precision = None,
-    discount: Discount = None,
-    stop_value: StopValue = None,
-    states: Annotated[
-        int, typer.Option(min=1, max=MAX_COUNT, help="Give up beyond so many states")
-    ] = MAX_STATES,
-    out: Out = None,
-    export: Exports = None,
-    graph: Annotated[
-        Path | None, typer.Option(help="Draw the policy: .dot, or .svg by Graphviz", callback=writable)
-    ] = None,
-    header: Annotated[
-        Path | None,
-        typer.Option("--c-header", help="Write the policy as C that needs nothing else", callback=writable),
-    ] = None,
-    nodes: Annotated[int, typer.Option(min=1, max=50_000, help="Size of the drawing and of the C")] = 200,
+    solving: SolvingOptions,
+    files: OutputOptions,
     set_values: SetValues = None,
     as_json: AsJson = False,
     trust_documents: TrustDocuments = False,
@@ -135,32 +143,34 @@ def solve(
     The bounds of what it gives are proven. Every state that can be reached is enumerated and solved with
     SARSOP. Ctrl-C ends it early and keeps the best so far. Values are discounted and without a horizon.
     """
-    _check_names(export or [], graph)
+    exports = files.export or []
+    _check_names(exports, files.graph)
     if target.suffix in PROBLEM_ENDINGS and not target.is_dir():
         if set_values:
             raise typer.BadParameter("a problem file has no mission parameters", param_hint="--set")
-        found = _problem(target, states, discount)
+        found = _problem(target, solving.states, solving.discount)
     else:
         values = values_of_options(set_values)
-        found = asyncio.run(_enumerated(target, states, discount, values, is_exported=bool(export)))
-    if stop_value is not None:
-        found = msgspec.structs.replace(found, model=with_stopping(found.model, stop_value))
-    limits = SolvingLimits(precision=precision, cpu_s=time_s)
-    written: list[str] = []
-    for path in export or []:
+        found = asyncio.run(_enumerated(target, solving, values, is_exported=bool(exports)))
+    if solving.stop_value is not None:
+        found = msgspec.structs.replace(found, model=with_stopping(found.model, solving.stop_value))
+    limits = SolvingLimits(precision=solving.precision, cpu_s=solving.time_s)
+    for path in exports:
         write_problem(found.model, path)
-        written.append(str(path))
+    written = [str(path) for path in exports]
     check_discount(found.model.name, found.model.discount)
     if not as_json:
         _print_size(found)
-    digits = _digits(precision_of(found.model, limits))
-    solution = asyncio.run(_solve(found.model, limits, _ignore if as_json else _printing(digits)))
-    if out is not None:
-        _policy(found, solution, stop_value).save(out)
-        written.append(str(out))
-    drawn = policy_graph(found.model, solution.vectors, max_nodes=nodes) if graph or header else None
-    if drawn is not None:
-        written += _write_graph(drawn, graph, header)
+    # Four decimals for the usual precision of 0.001, and more for a smaller one.
+    digits = Digits.of([1000 * min(precision_of(found.model, limits), 1e-3)], 4)
+    solution = asyncio.run(_solve(found.model, limits, None if as_json else digits))
+    if files.out is not None:
+        _policy(found, solution, solving.stop_value).save(files.out)
+        written.append(str(files.out))
+    drawn = None
+    if files.graph or files.header:
+        drawn = policy_graph(found.model, solution.vectors, max_nodes=files.nodes)
+        written += _write_graph(drawn, files.graph, files.header)
     if as_json:
         print_json(_report(found, solution, drawn, written))
     else:
@@ -191,29 +201,24 @@ def _problem(path: Path, max_states: int, discount: float | None) -> _Target:
 
 
 async def _enumerated(
-    bundle: Path,
-    max_states: int,
-    discount: float | None,
-    values: tuple[MissionValue, ...],
-    *,
-    is_exported: bool,
+    bundle: Path, solving: SolvingOptions, values: tuple[MissionValue, ...], *, is_exported: bool
 ) -> _Target:
+    discount = solving.discount
     async with engine_of_bundle(bundle, seed=1, values=values) as engine:
         if not is_exported:  # A file may have any discount.
             wanted = engine.description.discount if discount is None else discount
             check_discount(engine.description.project, wanted)
         with _progress() as on_progress:
             found = await enumerate_model(
-                engine, max_states=max_states, discount=discount, on_progress=on_progress
+                engine, max_states=solving.states, discount=discount, on_progress=on_progress
             )
         parameters = engine.description.mission_parameters
         return _Target(found.model, engine.model_digest, found.state_texts, found.left_out, parameters)
 
 
-async def _solve(
-    model: ExplicitModel, limits: SolvingLimits, on_progress: Callable[[Bounds], None]
-) -> Solution:
-    """Solves until a limit or Ctrl-C. Shows that it works until there are bounds to tell."""
+async def _solve(model: ExplicitModel, limits: SolvingLimits, digits: Digits | None) -> Solution:
+    """Solves until a limit or Ctrl-C. Shows that it works until there are bounds, and prints these with the
+    digits, if they are given."""
     await build_solver(cache_dir(), lambda remark: typer.echo(f"aos: {remark}", err=True))
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()
@@ -223,7 +228,10 @@ async def _solve(
 
         def show(bounds: Bounds) -> None:
             until_bounds.close()
-            on_progress(bounds)
+            if digits is not None and not bounds.ending:
+                lower, upper = _outwards(bounds, digits)
+                values = f"{lower:>12} {upper:>12} {digits.plain(bounds.gap):>10}"
+                typer.echo(f"{bounds.seconds:9.2f} {values} {bounds.vectors:9,}")
 
         try:
             return await solve_model(model, limits, cache_dir=cache_dir(), on_progress=show, stop=stop)
@@ -276,10 +284,6 @@ def _progress() -> Iterator[Callable[[Listed], None]]:
         yield lambda found: bar.update(task, completed=found.listed, total=found.known)
 
 
-def _ignore(_: Bounds) -> None:
-    return
-
-
 def _print_size(target: _Target) -> None:
     model, size = target.model, target.model.size
     spaces = f"{count(size.states, 'state')}, {count(size.actions, 'action')}"
@@ -299,21 +303,6 @@ def _print_left_out(names: tuple[str, ...]) -> None:
 def _outwards(bounds: Bounds, digits: Digits) -> tuple[str, str]:
     """Both bounds so that they hold in the printed digits as well."""
     return digits.plain(digits.down(bounds.lower)), digits.plain(digits.up(bounds.upper))
-
-
-def _digits(precision: float) -> Digits:
-    """Four decimals for the usual precision of 0.001, and more for a smaller one."""
-    return Digits.of([1000 * min(precision, 1e-3)], 4)
-
-
-def _printing(digits: Digits) -> Callable[[Bounds], None]:
-    def print_bounds(bounds: Bounds) -> None:
-        if not bounds.ending:
-            lower, upper = _outwards(bounds, digits)
-            values = f"{lower:>12} {upper:>12} {digits.plain(bounds.gap):>10}"
-            typer.echo(f"{bounds.seconds:9.2f} {values} {bounds.vectors:9,}")
-
-    return print_bounds
 
 
 def _print_end(solution: Solution, drawn: PolicyGraph | None, written: list[str], digits: Digits) -> None:

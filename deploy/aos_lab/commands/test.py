@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
@@ -26,6 +26,20 @@ SHOWN_MISSIONS = 3
 """The number of missions shown where a claim did not hold; all are in the JUnit file and in the JSON."""
 
 
+class MissionOptions(NamedTuple):
+    """The number of missions, and what is kept of them."""
+
+    jobs: Annotated[int, typer.Option(min=1, help="Missions at a time")] = 1
+    seeds: Annotated[int | None, typer.Option(min=1, help="Missions of each test, not the file's")] = None
+    junit: Annotated[
+        Path | None, typer.Option(metavar="XML", help="Write a JUnit file", callback=writable)
+    ] = None
+    keep: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Keep records and runs here, and use those that are there"),
+    ] = None
+
+
 @command(
     "Example: aos test docs/examples/missions.yaml --junit report.xml. "
     "Exit codes: 0 all claims hold, 4 one does not, 1 the file or documents have errors.",
@@ -33,15 +47,7 @@ SHOWN_MISSIONS = 3
 )
 def run_tests(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The file of mission tests")],
-    jobs: Annotated[int, typer.Option(min=1, help="Missions at a time")] = 1,
-    seeds: Annotated[int | None, typer.Option(min=1, help="Missions of each test, not the file's")] = None,
-    junit: Annotated[
-        Path | None, typer.Option(metavar="XML", help="Write a JUnit file", callback=writable)
-    ] = None,
-    keep: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Keep records and runs here, and use those that are there"),
-    ] = None,
+    missions: MissionOptions,
     set_values: SetValues = None,
     as_json: AsJson = False,
     trust_documents: TrustDocuments = False,
@@ -61,24 +67,26 @@ def run_tests(
     with (
         tempfile.TemporaryDirectory() as passing,
         progress() as bar,
-        interruption_among_missions(bar, are_kept=keep is not None),
+        interruption_among_missions(bar, are_kept=missions.keep is not None),
     ):
-        out = (keep or Path(passing)).resolve()
+        out = (missions.keep or Path(passing)).resolve()
         for name, test in tests.items():
-            numbers = range(test.first_seed, test.first_seed + (seeds or test.seeds))
+            numbers = range(test.first_seed, test.first_seed + (missions.seeds or test.seeds))
             task = bar.add_task(name, total=len(numbers))
-            missions = play_campaign(
+            played = play_campaign(
                 test,
                 numbers,
                 folder=file.resolve().parent,
                 out=out / name,
                 on_trial=partial(bar.advance, task),
-                place=Place(jobs=jobs, on_progress=lambda text: typer.echo(f"aos: {text}", err=True)),
+                place=Place(
+                    jobs=missions.jobs, on_progress=lambda text: typer.echo(f"aos: {text}", err=True)
+                ),
                 mission_values=values_of_options(set_values),
             )
-            tested[name] = Tested.of(test, asyncio.run(missions).trials)
-    if junit is not None:
-        write_junit(junit, tested)
+            tested[name] = Tested.of(test, asyncio.run(played).trials)
+    if missions.junit is not None:
+        write_junit(missions.junit, tested)
     show(tested, as_json, _print_tested)
     if not all(test.passed for test in tested.values()):
         raise typer.Exit(ExitCode.MISSION_FAILED)
