@@ -9,7 +9,7 @@ from aos_lab.experiments.physics import simulated_speed
 from aos_lab.trials.claims import Around, Before, Claim, Count, When, asking_the_world, judge, matches
 from aos_lab.trials.files import read_experiment, read_script_file, read_test_file
 from aos_lab.trials.intervals import Interval, interval_of_mean, interval_of_share
-from aos_lab.trials.junit import verdict_text
+from aos_lab.trials.junit import failed_missions, verdict_text
 from aos_lab.trials.setting import deployment_of
 from aos_lab.trials.trial import Trial
 from aos_protocol.errors import DeployError
@@ -81,7 +81,9 @@ def test_each_check_can_hold_and_can_fail(claim, holds):
 
 def test_nothing_is_claimed_of_states_that_nobody_knows():
     claim = Claim(says="", never_state="hurt=true | lost=true")
-    assert not judge(claim, [DELIVERED]).is_seen
+    unknown = judge(claim, [DELIVERED])
+    assert not unknown.is_seen
+    assert failed_missions(unknown, [DELIVERED])[0].endswith("; no state of the world was recorded")
     known = trial("a > b", states=("hurt=false, lost=false",))
     assert judge(claim, [known]).is_seen
     assert not judge(claim, [trial("a > b", states=("hurt=false, lost=true",))]).is_seen

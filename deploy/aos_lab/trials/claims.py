@@ -92,8 +92,14 @@ class Claim(When, frozen=True, kw_only=True):
     around: Around | None = None
 
 
+_OF_WORLD = ("never_state", "some_state", "first_state", "last_state", "around")
+
+
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
-    """The result of a claim: in how many of how many missions it held, and the seeds where it did not."""
+    """The result of a claim: in how many of how many missions it held, and the seeds where it did not.
+
+    `asks_world` says that states of the world are asked for.
+    """
 
     says: str
     held: int
@@ -102,6 +108,7 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     wanted: float
     is_seen: bool
     failed_seeds: tuple[int, ...]
+    asks_world: bool = False
 
     @property
     def word(self) -> str:
@@ -141,6 +148,7 @@ def judge(claim: Claim, trials: Sequence[Trial], by: str = "model") -> Verdict:
         wanted=wanted,
         is_seen=bool(about) and reached >= wanted,
         failed_seeds=tuple(failed),
+        asks_world=any(getattr(claim, name) is not None for name in _OF_WORLD),
     )
 
 

@@ -69,6 +69,7 @@ def failed_missions(verdict: Verdict, trials: Sequence[Trial]) -> list[str]:
     """The missions where a claim did not hold, each with all that was done."""
     return [
         f"seed {trial.seed}, {trial.ending}: {trial.fault or ', '.join(trial.steps) or 'nothing was done'}"
+        + ("; no state of the world was recorded" if verdict.asks_world and not trial.states else "")
         for trial in trials
         if trial.seed in verdict.failed_seeds
     ]
