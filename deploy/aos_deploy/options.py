@@ -100,6 +100,10 @@ Run = Annotated[
         "--run", metavar="DIR", help="A run directory, or a file of `aos export`; else what runs, or the last"
     ),
 ]
+OneRun = Annotated[
+    Path | None,
+    typer.Argument(metavar="RUN", help="A run directory, or a file of `aos export`; else the last"),
+]
 ChosenRuns = Annotated[
     list[Path] | None,
     typer.Argument(metavar="RUN...", help="Run directories, or a folder of them; else the last run"),

@@ -152,12 +152,8 @@ class Keys:
 
     def serving_of(self, serve_key: str) -> Serving | None:
         """Returns the contents of a token; None for one that says nothing."""
-        head = f"{self.root}/serve/"
-        parts = serve_key.removeprefix(head).split("/", 3)
-        if len(parts) != 4 or not serve_key.startswith(head):
-            return None
-        adapter, version, instance, path = parts
-        return Serving(adapter, version, instance, "/" + path)
+        parts = self._parts(serve_key, "serve", 4)
+        return Serving(parts[0], parts[1], parts[2], "/" + parts[3]) if parts else None
 
     def lack(self, lack: Lack) -> str:
         adapter = _checked(_NAME, lack.adapter, "adapter name")
@@ -166,11 +162,8 @@ class Keys:
 
     def lack_of(self, lack_key: str) -> Lack | None:
         """Returns the contents of a token; None for one that says nothing."""
-        head = f"{self.root}/lack/"
-        parts = lack_key.removeprefix(head).split("/", 2)
-        if len(parts) != 3 or not lack_key.startswith(head):
-            return None
-        return Lack(parts[0], unquote(parts[1]), "/" + parts[2])
+        parts = self._parts(lack_key, "lack", 3)
+        return Lack(parts[0], unquote(parts[1]), "/" + parts[2]) if parts else None
 
     def returning(self, program: str) -> str:
         return f"{self.root}/returning/{_checked(_NAME, program, 'adapter name')}"
@@ -186,6 +179,11 @@ class Keys:
     def service_of(self, live_key: str) -> str:
         """The service name in a liveliness key."""
         return live_key.removeprefix(f"{self.root}/live/")
+
+    def _parts(self, key: str, kind: str, count: int) -> list[str]:
+        """The parts of a token of this kind, its path as the last one; none for another key."""
+        parts = key.removeprefix(f"{self.root}/{kind}/").split("/", count - 1)
+        return parts if key.startswith(f"{self.root}/{kind}/") and len(parts) == count else []
 
 
 def _path(path: str) -> str:

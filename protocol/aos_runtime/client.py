@@ -16,41 +16,12 @@ from typing import Any, Literal, TypeVar
 
 import msgspec
 
+from aos_protocol import messages
 from aos_protocol.access import OPERATOR, WATCHER, Party
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import BusError, LateAnswerError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.keys import Keys
-from aos_protocol.messages import (
-    BundleReport,
-    Catalogue,
-    CatalogueQuery,
-    DecisionRecord,
-    DecisionTree,
-    History,
-    HistoryQuery,
-    MappingQuery,
-    MappingState,
-    Message,
-    MissionEntry,
-    MissionQuery,
-    Missions,
-    MissionsQuery,
-    MissionState,
-    ProjectQuery,
-    ProjectRevision,
-    PushBundle,
-    RemoveDocuments,
-    Revisions,
-    RevisionsQuery,
-    StartMission,
-    StopMission,
-    TreeQuery,
-    WhatIf,
-    WhatIfQuery,
-    Why,
-    WhyQuery,
-)
 from aos_runtime.bus.bus import Access, Bus
 from aos_runtime.bus.credentials import Credential, credential_of_environment, credential_of_run
 from aos_runtime.bus.subscription import Subscription, merged
@@ -72,7 +43,7 @@ _HISTORY_TRIES = 3
 
 _log = logging.getLogger("aos.client")
 
-R = TypeVar("R", bound=Message)
+R = TypeVar("R", bound=messages.Message)
 
 SOLVER_AWAY_S = 15.0
 """A solver that is started again is back within this time."""
@@ -147,9 +118,9 @@ class AosClient(SteeringQuestions):
                 raise BusError(f"{run} is over", code="AOS605", hint="See `aos runs`") from error
             yield client
 
-    async def mission_state(self) -> MissionState:
+    async def mission_state(self) -> messages.MissionState:
         """Asks for the mission's state now; NobodyAnswersError if there is no solver."""
-        return await self._ask(self.keys.mission_state, MissionQuery(), MissionState)
+        return await self._ask(self.keys.mission_state, messages.MissionQuery(), messages.MissionState)
 
     async def start_mission(
         self,
@@ -158,15 +129,17 @@ class AosClient(SteeringQuestions):
         given: Iterable[str] = (),
         idle: int = 0,
         values: Mapping[str, str] | None = None,
-    ) -> MissionState:
+    ) -> messages.MissionState:
         """Begins the next mission of a system that stays, once; what to give is as in StartMission.
 
         AosError with the reason if it cannot begin: SkillError AOS515 while one runs.
         """
-        start = StartMission(belief, tuple(given), idle, dict(values or {}), request=uuid.uuid4().hex)
+        start = messages.StartMission(
+            belief, tuple(given), idle, dict(values or {}), request=uuid.uuid4().hex
+        )
         return await start_mission(self.bus, self.keys, start)
 
-    async def stop_mission(self, mission: str = "") -> MissionState:
+    async def stop_mission(self, mission: str = "") -> messages.MissionState:
         """Ends the mission that runs as `cancelled`, and returns when it has ended.
 
         Where none runs, or another one than the `mission` that is named, nothing changes.
@@ -174,26 +147,26 @@ class AosClient(SteeringQuestions):
         return await ask_until_answered(
             self.bus,
             self.keys.stop_mission,
-            StopMission(mission, by=self.by),
-            MissionState,
+            messages.StopMission(mission, by=self.by),
+            messages.MissionState,
             server=self.keys.live("solver"),
             timeout_s=STEER_TIMEOUT_S,
         )
 
-    async def push(self, files: dict[str, bytes], source: str) -> BundleReport:
+    async def push(self, files: dict[str, bytes], source: str) -> messages.BundleReport:
         """Gives the registry documents. Its report also warns of what is new and nobody could run now.
 
         Errors are those of `Bus.ask`.
         """
         bus, keys = self.bus, self.keys
-        bundle = PushBundle(files, source)
-        report = await bus.ask(keys.push_bundle, bundle, BundleReport, timeout_s=_PUSH_TIMEOUT_S)
+        bundle = messages.PushBundle(files, source)
+        report = await bus.ask(keys.push_bundle, bundle, messages.BundleReport, timeout_s=_PUSH_TIMEOUT_S)
         async with bus.presence(keys.live("middleware")) as middleware:
             if not (report.is_accepted and middleware.has_items):
                 return report
         away: dict[str, str] = {}
 
-        def can_be_run(state: MappingState) -> bool:
+        def can_be_run(state: messages.MappingState) -> bool:
             nonlocal away
             new = {*report.added, *report.changed}
             away = {skill: why for skill, why in state.unavailable.items() if skill in new}
@@ -201,7 +174,12 @@ class AosClient(SteeringQuestions):
 
         with suppress(BusError):
             await state_when(
-                bus, keys.mapping_state, MappingQuery(), MappingState, can_be_run, timeout_s=_ADAPTERS_S
+                bus,
+                keys.mapping_state,
+                messages.MappingQuery(),
+                messages.MappingState,
+                can_be_run,
+                timeout_s=_ADAPTERS_S,
             )
         warnings = (
             Diagnostic(Severity.WARNING, "AOS505", f"nobody can run it now: {why}", Span(skill), _TO_BIND)
@@ -209,64 +187,68 @@ class AosClient(SteeringQuestions):
         )
         return msgspec.structs.replace(report, diagnostics=(*report.diagnostics, *warnings))
 
-    async def catalogue(self) -> Catalogue:
+    async def catalogue(self) -> messages.Catalogue:
         """The projects that the registry holds."""
-        return await self._ask(self.keys.catalogue, CatalogueQuery(), Catalogue)
+        return await self._ask(self.keys.catalogue, messages.CatalogueQuery(), messages.Catalogue)
 
-    async def project(self, name: str = "", revision: int = 0) -> ProjectRevision:
+    async def project(self, name: str = "", revision: int = 0) -> messages.ProjectRevision:
         """A project's documents in its newest or another revision. The only project needs no name."""
-        return await self._ask(self.keys.project, ProjectQuery(name, revision), ProjectRevision)
+        return await self._ask(
+            self.keys.project, messages.ProjectQuery(name, revision), messages.ProjectRevision
+        )
 
-    async def revisions(self, project: str) -> Revisions:
+    async def revisions(self, project: str) -> messages.Revisions:
         """The revisions of a project. The only one needs no name."""
-        return await self._ask(self.keys.bundle_history, RevisionsQuery(project), Revisions)
+        return await self._ask(self.keys.bundle_history, messages.RevisionsQuery(project), messages.Revisions)
 
-    async def remove(self, project: str, skill: str = "") -> BundleReport:
+    async def remove(self, project: str, skill: str = "") -> messages.BundleReport:
         """Takes a skill, or a whole project, out of the catalogue."""
-        request = RemoveDocuments(project, skill)
-        return await self._ask(self.keys.remove_bundle, request, BundleReport, _PUSH_TIMEOUT_S)
+        request = messages.RemoveDocuments(project, skill)
+        return await self._ask(self.keys.remove_bundle, request, messages.BundleReport, _PUSH_TIMEOUT_S)
 
-    async def mapping_state(self) -> MappingState:
+    async def mapping_state(self) -> messages.MappingState:
         """The revision that the middleware runs, and the skills that nobody can run."""
-        return await self._ask(self.keys.mapping_state, MappingQuery(), MappingState)
+        return await self._ask(self.keys.mapping_state, messages.MappingQuery(), messages.MappingState)
 
-    async def _ask(self, key: str, query: Message, reply: type[R], timeout_s: float | None = None) -> R:
+    async def _ask(
+        self, key: str, query: messages.Message, reply: type[R], timeout_s: float | None = None
+    ) -> R:
         return await self.bus.ask(key, query, reply, timeout_s=timeout_s or _ANSWER_S)
 
-    async def missions(self) -> Missions:
+    async def missions(self) -> messages.Missions:
         """The missions of the system so far."""
-        return await self._ask(self.keys.missions, MissionsQuery(), Missions)
+        return await self._ask(self.keys.missions, messages.MissionsQuery(), messages.Missions)
 
-    async def why(self, step: int, *, instead: str = "", mission: int | None = None) -> Why:
+    async def why(self, step: int, *, instead: str = "", mission: int | None = None) -> messages.Why:
         """The reasons for the decision of a step, and not for `instead` another action.
 
         The mission is the newest one, or that of a number in a system that stays. StudyError AOS530 where it
         cannot be told; SkillError AOS501 for a step or an action that there is not.
         """
-        query = WhyQuery(step, instead, await self._named(mission))
-        return await self._ask(self.keys.study_why, query, Why, STUDY_TIMEOUT_S)
+        query = messages.WhyQuery(step, instead, await self._named(mission))
+        return await self._ask(self.keys.study_why, query, messages.Why, STUDY_TIMEOUT_S)
 
-    async def what_if(self, query: WhatIfQuery, *, mission: int | None = None) -> WhatIf:
+    async def what_if(self, query: messages.WhatIfQuery, *, mission: int | None = None) -> messages.WhatIf:
         """The decision of a step under other circumstances; errors as from `why`."""
         query = msgspec.structs.replace(query, mission=await self._named(mission))
-        return await self._ask(self.keys.study_whatif, query, WhatIf, STUDY_TIMEOUT_S)
+        return await self._ask(self.keys.study_whatif, query, messages.WhatIf, STUDY_TIMEOUT_S)
 
-    async def tree(self, query: TreeQuery) -> DecisionTree:
+    async def tree(self, query: messages.TreeQuery) -> messages.DecisionTree:
         """The tree below a decision; errors as from `why`."""
-        return await self._ask(self.keys.study_tree, query, DecisionTree, STUDY_TIMEOUT_S)
+        return await self._ask(self.keys.study_tree, query, messages.DecisionTree, STUDY_TIMEOUT_S)
 
     async def _named(self, mission: int | None) -> str:
         """The name of a mission by its number; empty for the newest one."""
         return "" if mission is None else _found(await self.missions(), mission).mission
 
-    async def until_ended(self, mission: str) -> MissionEntry:
+    async def until_ended(self, mission: str) -> messages.MissionEntry:
         """Returns how a mission has ended, once it has.
 
         NobodyAnswersError where the solver has gone for good; SkillError AOS501 if there is no such mission.
         """
         keys = self.keys
         stream = merged(
-            self.bus.listen(keys.mission_state, MissionState), self.bus.presence(keys.live("solver"))
+            self.bus.listen(keys.mission_state, messages.MissionState), self.bus.presence(keys.live("solver"))
         )
         may_wait_s: float | None = SOLVER_AWAY_S
         async with stream:
@@ -276,30 +258,32 @@ class AosClient(SteeringQuestions):
                     raise NobodyAnswersError(f"the solver has left before the end of {mission}")
                 if isinstance(event, bool):
                     may_wait_s = None if event else SOLVER_AWAY_S
-                is_news = event is True or (isinstance(event, MissionState) and _may_end(event, mission))
+                is_news = event is True or (
+                    isinstance(event, messages.MissionState) and _may_end(event, mission)
+                )
                 entry = await self._entry(mission) if is_news else None
                 if entry is not None and entry.ended_ns:
                     return entry
 
-    async def _entry(self, mission: str) -> MissionEntry | None:
+    async def _entry(self, mission: str) -> messages.MissionEntry | None:
         try:
             return _found(await self.missions(), mission)
         except (LateAnswerError, NobodyAnswersError, LostAnswerError):
             return None  # There is news when it is back.
 
-    async def decisions(self) -> AsyncIterator[DecisionRecord]:
+    async def decisions(self) -> AsyncIterator[messages.DecisionRecord]:
         """Every decision record from the first, each once and in order, until the mission ends.
 
         Who joins late gets what was before, and a gap in the stream is filled from the solver's history. If
         the solver is not there yet, waits for it; ends when it has gone for good.
         """
         async for event in self.follow():
-            if isinstance(event, DecisionRecord):
+            if isinstance(event, messages.DecisionRecord):
                 yield event
 
     async def follow(
         self, *, away_s: float | None = SOLVER_AWAY_S, begins_s: float | None = None, stays: bool = False
-    ) -> AsyncGenerator[DecisionRecord | MissionState | BundleReport, None]:
+    ) -> AsyncGenerator[messages.DecisionRecord | messages.MissionState | messages.BundleReport, None]:
         """Yields what `decisions` yields, each change of the mission's state, and what becomes of dropped
         bundles.
 
@@ -310,9 +294,9 @@ class AosClient(SteeringQuestions):
         keys = self.keys
         feed = DecisionFeed()
         stream = merged(
-            self.bus.listen(keys.decisions, DecisionRecord),
-            self.bus.listen(keys.mission_state, MissionState),
-            self.bus.listen(keys.bundle_report, BundleReport),
+            self.bus.listen(keys.decisions, messages.DecisionRecord),
+            self.bus.listen(keys.mission_state, messages.MissionState),
+            self.bus.listen(keys.bundle_report, messages.BundleReport),
             self.bus.presence(keys.live("solver")),
         )
         may_wait_s = begins_s
@@ -321,22 +305,22 @@ class AosClient(SteeringQuestions):
                 if isinstance(event, bool):
                     may_wait_s = None if event else away_s
                 state = await self._state_if_there() if event is True else None
-                if isinstance(event, MissionState):
+                if isinstance(event, messages.MissionState):
                     state = event
                 is_over = state is not None and state.phase == "ended"
-                for record in feed.take(event) if isinstance(event, DecisionRecord) else ():
+                for record in feed.take(event) if isinstance(event, messages.DecisionRecord) else ():
                     yield record
                 if feed.has_gap or event is True or is_over:
                     async for record in self._missing(feed):
                         yield record
                 if state is not None:
                     yield state
-                if isinstance(event, BundleReport):
+                if isinstance(event, messages.BundleReport):
                     yield event
                 if is_over and not stays:
                     return
 
-    async def history(self) -> AsyncIterator[DecisionRecord]:
+    async def history(self) -> AsyncIterator[messages.DecisionRecord]:
         """Every record that there is by now, page after page.
 
         NobodyAnswersError if there is no solver; BusError if it does not answer.
@@ -349,11 +333,11 @@ class AosClient(SteeringQuestions):
                 return
             page = await self._page(page.records[-1].sequence + 1)
 
-    async def page(self, query: HistoryQuery) -> History:
+    async def page(self, query: messages.HistoryQuery) -> messages.History:
         """A part of a mission's records; errors as from `history`."""
-        return await self._ask(self.keys.decision_history, query, History)
+        return await self._ask(self.keys.decision_history, query, messages.History)
 
-    async def _missing(self, feed: DecisionFeed) -> AsyncIterator[DecisionRecord]:
+    async def _missing(self, feed: DecisionFeed) -> AsyncIterator[messages.DecisionRecord]:
         """The records from the history that the feed lacks; none if the solver has gone."""
         has_more = True
         while has_more:
@@ -370,8 +354,8 @@ class AosClient(SteeringQuestions):
             # Those of another mission begin anew.
             has_more = feed.next_sequence < since or (page.has_more and feed.next_sequence > since)
 
-    async def _page(self, since: int) -> History:
-        query = HistoryQuery(since, _PAGE_RECORDS)
+    async def _page(self, since: int) -> messages.History:
+        query = messages.HistoryQuery(since, _PAGE_RECORDS)
         for _ in range(_HISTORY_TRIES - 1):
             try:
                 return await self.page(query)
@@ -379,14 +363,14 @@ class AosClient(SteeringQuestions):
                 _log.info("%s; asked again", error)
         return await self.page(query)
 
-    async def _state_if_there(self) -> MissionState | None:
+    async def _state_if_there(self) -> messages.MissionState | None:
         try:
             return await self.mission_state()
         except BusError:
             return None
 
 
-def _found(missions: Missions, wanted: str | int) -> MissionEntry:
+def _found(missions: messages.Missions, wanted: str | int) -> messages.MissionEntry:
     """The mission of a name or a number; SkillError AOS501 if there is none."""
     for entry in missions.entries:
         if wanted in (entry.mission, entry.number):
@@ -412,7 +396,7 @@ def _access_of(robot: str, credential: Credential | None) -> Access | None:
     return Access(robot, Party(name=credential.user, role=credential.user))
 
 
-def _may_end(state: MissionState, mission: str) -> bool:
+def _may_end(state: messages.MissionState, mission: str) -> bool:
     """Says whether a state tells that a mission has ended: its own end, or what another one does."""
     return state.phase == "ended" or state.mission != mission
 

@@ -11,7 +11,7 @@ from aos_deploy.history_check.files import check_run
 from aos_deploy.history_check.replayed import Replay, replayed
 from aos_deploy.history_check.rules import BY_TIME, RULES
 from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, Runs
+from aos_deploy.options import AsJson, OneRun, Runs
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.runs.living import chosen_run
 from aos_deploy.terminal import waiting
@@ -20,10 +20,7 @@ from aos_protocol.errors import DeployError
 
 @command("Example: aos check runs/latest")
 def check(
-    run: Annotated[
-        Path | None,
-        typer.Argument(metavar="RUN", help="A run directory, or a file of `aos export`; else the last"),
-    ] = None,
+    run: OneRun = None,
     runs: Runs = None,
     replay: Annotated[
         bool, typer.Option("--replay/--no-replay", help="Replay the outcomes through the run's model")

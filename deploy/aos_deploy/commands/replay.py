@@ -10,7 +10,7 @@ import typer
 
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, Mission, Runs, TrustDocuments
+from aos_deploy.options import AsJson, Mission, OneRun, Runs, TrustDocuments
 from aos_deploy.printing import count, from_here, show
 from aos_deploy.runs.difference import Difference, difference
 from aos_deploy.runs.living import chosen_run
@@ -38,10 +38,7 @@ class Replayed(msgspec.Struct):
 
 @command("Example: aos replay runs/latest --until 4")
 def replay(
-    run: Annotated[
-        Path | None,
-        typer.Argument(metavar="RUN", help="A run directory, or a file of `aos export`; else the last"),
-    ] = None,
+    run: OneRun = None,
     until: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="End with the decision of this step")
     ] = None,

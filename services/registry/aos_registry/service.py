@@ -7,21 +7,10 @@ from pathlib import Path
 
 import msgspec
 
+from aos_protocol import messages
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError, NobodyAnswersError, StorageError
-from aos_protocol.messages import (
-    BundleReport,
-    CatalogueQuery,
-    CheckModel,
-    ModelCheck,
-    ProjectQuery,
-    ProjectRevision,
-    PushBundle,
-    RemoveDocuments,
-    Revisions,
-    RevisionsQuery,
-)
 from aos_protocol.messages import Catalogue as CatalogueAnswer
 from aos_protocol.spelling import did_you_mean, quoted
 from aos_registry.catalogue import Catalogue
@@ -61,11 +50,11 @@ class _Registry:
         for report in self._intake.recall():
             _log.error("the stored project %s cannot be used any more", report.project)
             _log_diagnostics(report)
-        await self._bus.answer(self._keys.push_bundle, PushBundle, self._answer_push)
-        await self._bus.answer(self._keys.remove_bundle, RemoveDocuments, self._answer_remove)
-        await self._bus.answer(self._keys.bundle_history, RevisionsQuery, self._answer_history)
-        await self._bus.answer(self._keys.project, ProjectQuery, self._answer_project)
-        await self._bus.answer(self._keys.catalogue, CatalogueQuery, self._answer_catalogue)
+        await self._bus.answer(self._keys.push_bundle, messages.PushBundle, self._answer_push)
+        await self._bus.answer(self._keys.remove_bundle, messages.RemoveDocuments, self._answer_remove)
+        await self._bus.answer(self._keys.bundle_history, messages.RevisionsQuery, self._answer_history)
+        await self._bus.answer(self._keys.project, messages.ProjectQuery, self._answer_project)
+        await self._bus.answer(self._keys.catalogue, messages.CatalogueQuery, self._answer_catalogue)
         await self._service.ready()
         for project in self._intake.revisions:
             # Who was there before, and found no registry, waits for this.
@@ -74,12 +63,12 @@ class _Registry:
 
     # --- answers ---
 
-    async def _answer_push(self, bundle: PushBundle, _: str) -> BundleReport:
+    async def _answer_push(self, bundle: messages.PushBundle, _: str) -> messages.BundleReport:
         report = await self._take_in(bundle.files, bundle.source)
         self._tell_report(report)
         return report
 
-    async def _answer_remove(self, request: RemoveDocuments, _: str) -> BundleReport:
+    async def _answer_remove(self, request: messages.RemoveDocuments, _: str) -> messages.BundleReport:
         async with self._turn:
             report, is_new = await self._intake.remove(request.project, request.skill)
             if is_new:
@@ -87,7 +76,7 @@ class _Registry:
         self._tell_report(report)
         return report
 
-    async def _answer_project(self, query: ProjectQuery, _: str) -> ProjectRevision:
+    async def _answer_project(self, query: messages.ProjectQuery, _: str) -> messages.ProjectRevision:
         project = self._named(query.project)
         current = self._intake.revisions[project]
         found = self._intake.past(project, query.revision) if query.revision else current
@@ -96,11 +85,11 @@ class _Registry:
         stored = self._catalogue.revision(project, found.revision)
         return msgspec.structs.replace(found, files=stored.files if stored is not None else {})
 
-    async def _answer_history(self, query: RevisionsQuery, _: str) -> Revisions:
+    async def _answer_history(self, query: messages.RevisionsQuery, _: str) -> messages.Revisions:
         entries = self._catalogue.history(query.project)
         if not entries:  # A removed project still has a history, by its name.
             entries = self._catalogue.history(self._named(query.project))
-        return Revisions(query.project or self._named(""), entries)
+        return messages.Revisions(query.project or self._named(""), entries)
 
     def _named(self, project: str) -> str:
         """The project of that name, or the only one there is; DocumentError says which there are."""
@@ -118,17 +107,17 @@ class _Registry:
         hint = did_you_mean(project, revisions) or f"It holds {names}"
         raise DocumentError(f"the catalogue holds no project {project}", code="AOS110", hint=hint)
 
-    async def _answer_catalogue(self, _: CatalogueQuery, __: str) -> CatalogueAnswer:
+    async def _answer_catalogue(self, _: messages.CatalogueQuery, __: str) -> CatalogueAnswer:
         return CatalogueAnswer(self._catalogue.entries())
 
     # --- intake ---
 
-    def _tell_report(self, report: BundleReport) -> None:
+    def _tell_report(self, report: messages.BundleReport) -> None:
         """Whoever follows the registry hears of everything that was pushed, dropped or removed."""
         self._bus.tell(self._keys.bundle_report, report)
         _log_report(report)
 
-    async def _take_in(self, files: Mapping[str, bytes], source: str) -> BundleReport:
+    async def _take_in(self, files: Mapping[str, bytes], source: str) -> messages.BundleReport:
         async with self._turn:
             report, is_new = await self._intake.push(files, source)
             if is_new:
@@ -147,8 +136,8 @@ class _Registry:
         try:
             answer = await self._bus.ask(
                 self._keys.check_model,
-                CheckModel(project),
-                ModelCheck,
+                messages.CheckModel(project),
+                messages.ModelCheck,
                 timeout_s=self._settings.model_check_timeout_s,
             )
         except NobodyAnswersError:
@@ -168,7 +157,7 @@ def _made(folder: Path) -> Path:
     return folder.resolve()
 
 
-def _log_report(report: BundleReport) -> None:
+def _log_report(report: messages.BundleReport) -> None:
     if not report.is_accepted:
         waits = "; it is tried again when a project changes" if report.is_waiting else ""
         _log.warning("a bundle of project %s is refused (%s)%s", report.project or "?", report.source, waits)
@@ -179,7 +168,7 @@ def _log_report(report: BundleReport) -> None:
     _log_diagnostics(report)
 
 
-def _log_diagnostics(report: BundleReport) -> None:
+def _log_diagnostics(report: messages.BundleReport) -> None:
     for diagnostic in report.diagnostics:
         if diagnostic.is_error:
             _log.warning("%s", render(diagnostic))
