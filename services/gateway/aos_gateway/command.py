@@ -8,6 +8,7 @@ import typer
 
 from aos_deploy.export.run_bundle import opened_bundle
 from aos_deploy.marked_commands import command
+from aos_deploy.options import seconds
 from aos_deploy.runs.living import runs_here
 from aos_protocol.errors import DeployError
 
@@ -51,9 +52,7 @@ class ServeOptions(NamedTuple):
     ] = False
     unused: Annotated[
         float | None,
-        typer.Option(
-            "--unused", metavar="SECONDS", min=0, help="End when no mission runs, and none looked so long"
-        ),
+        seconds("--unused", least=0, help="End when no mission runs, and none looked for so many seconds"),
     ] = None
 
 
