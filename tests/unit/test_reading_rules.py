@@ -134,6 +134,8 @@ REFUSED = [
     Rule("go.sd", "parameter: §«Door door→door int»", "AOS104"),
     Rule("go glue.json", '«"ok"→["ok", "§) or (ok"]»}', "AOS121"),
     Rule("go glue.json", '§"«FromROSServiceResponse": true→RosParameter": "/ok"»', "AOS124"),
+    Rule("go glue.json", '"ok = __input.success"}«→, {"LocalVariableName": "§ok", '
+         '"FromROSServiceResponse": true, "AssignmentCode": "ok = __input.ok"}»', "AOS126", title="twice ok"),
     Rule("room.ef", "is_open« true→[2]»", "AOS104"),
     Rule("go.am", "«→    ok = 1\n  »ok = __input", "AOS121"),
 ]  # fmt: skip

@@ -241,7 +241,7 @@ def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, f
     parameters = {parameter.name: parameter.type for parameter in model.parameters}
     if name not in parameters:
         message = f"the skill {model.name} has no parameter `{name}`"
-        findings.unknown(name, parameters, message, span, _listing(parameters))
+        findings.unknown(name, parameters, message, span, _listing(parameters) or "It has none: declare it")
         return
     _field_type(parameters[name], fields, span, scope, findings)
 

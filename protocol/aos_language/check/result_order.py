@@ -20,7 +20,7 @@ def check_result_order(mapping: AbstractionMapping, findings: Findings) -> None:
     for snippet in early:
         _check(snippet, before, "Name local variables of parameters and topics", findings)
     for variable in results:
-        del waiting[variable.name]
+        waiting.pop(variable.name, None)  # It is gone where a second one has the name, which is told.
         if variable.code is not None:
             _check(variable.code, waiting, "Take it from `__input`, or put that variable first", findings)
 
