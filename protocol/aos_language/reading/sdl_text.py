@@ -304,7 +304,8 @@ class _Scanner:
         """The word a line that opens nothing was surely meant to be."""
         if name in _CODE_LABELS:
             return "", False
-        if (name.lower() in self._elsewhere or name in self._below) and self._is_word(name):
+        is_of_others = name.lower() in self._elsewhere and ("_" in name or not self._is_in_code())
+        if is_of_others or (name in self._below and self._is_word(name)):
             return "", False
         close = nearest(name, (*inner, *self._grammar))
         if not close or (self._is_in_code() and "_" not in close and len(close) < 8):
