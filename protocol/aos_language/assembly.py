@@ -70,8 +70,14 @@ def assemble(
             name: _with_types_first(model, types, findings) for name, model in assembly.models.items()
         }
     written = {name for kind, name in unique if kind is DocumentKind.MAPPING}
-    for name in assembly.models.keys() - written:
-        assembly.mappings[name] = derived_mapping(assembly.models[name], assembly.environment)
+    others_have = bool(written & assembly.models.keys()) and not has_unread_files
+    for name in sorted(assembly.models.keys() - written):
+        mapping = derived_mapping(assembly.models[name], assembly.environment)
+        if others_have and (mapping.rules or mapping.response_variable):
+            message = f"{name} has no abstraction mapping, which others have: it gets a derived one"
+            hint = f"It is called as `/{name}`, and the field `response` of its result is the response"
+            findings.remark("AOS114", message, mapping.span, hint)
+        assembly.mappings[name] = mapping
     if not has_unread_files:
         _check_complete(unique, findings, Span(bundle))
     return assembly
@@ -146,11 +152,5 @@ def _check_complete(
             span = unique[DocumentKind.SKILL, meant].span
             message = f"the skill {meant} has no abstraction mapping, and the mapping {name} no skill"
             findings.error("AOS114", message, span, f"Did you mean `{name}`?")
-    meant_by = {nearest(name, sorted(skills - mappings)) for name in mappings - skills}
-    for name in sorted(skills - mappings - meant_by) if skills & mappings else ():
-        # Where all skills lack one, that is how the bundle is written.
-        span, hint = unique[DocumentKind.SKILL, name].span, f"It is called as `/{name}`, with its parameters"
-        message = f"{name} has no abstraction mapping, which others have: it gets a derived one"
-        findings.remark("AOS114", message, span, hint)
     if not skills and not mappings:
         findings.error("AOS105", "there are no skills", bundle, "Add .sd files")
