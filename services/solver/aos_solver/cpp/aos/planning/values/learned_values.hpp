@@ -208,7 +208,7 @@ class LearnedValues final : public StateValues<Model> {
     return earned > at_random && earned >= (promised + at_random) / 2;
   }
 
-  // Compares both policies from the same states. The difference must exceed twice its standard error.
+  // Compares both policies from the same states. The difference must exceed `sure_errors` standard errors.
   bool beats_rollouts(const Belief<Model>& belief, Sampler& random) const {
     SampleMean differences;
     std::size_t steps = 0;
@@ -218,7 +218,7 @@ class LearnedValues final : public StateValues<Model> {
       if (Model::ending(state) != Ending::running) continue;
       differences.add(earned_by_values(state, random) - earned_by_rollouts(state, random, steps));
     }
-    return differences.count() >= min_compared_missions && differences.mean() > 2 * differences.error();
+    return differences.count() >= min_compared_missions && differences.mean() > sure_errors * differences.error();
   }
 
   // The discounted return of one mission whose policy observes the state.
