@@ -7,6 +7,7 @@
 #include <ctime>
 #include <exception>
 
+#include "aos/base/list.hpp"
 #include "point_based/online.hpp"
 #include "random_models.hpp"
 #include "reference.hpp"
@@ -51,7 +52,7 @@ class Trial {
     Belief belief;
     for (const auto& [state, probability] : problem_.model.starts.front().belief) belief.emplace_back(state, probability);
     for (step_ = 0; step_ < 3 && !belief.empty(); ++step_) {
-      std::vector<std::pair<std::uint32_t, double>> entries;
+      aos::List<std::pair<std::uint32_t, double>> entries;
       for (const auto& [state, probability] : belief) entries.emplace_back(state, static_cast<double>(probability));
       for (std::size_t i = 0; i < belief.size(); ++i) belief[i].second = entries[i].second;
       Real total = 0;
@@ -92,7 +93,7 @@ class Trial {
     claim(lower <= upper, "lower above upper", lower, upper, upper);
     claim(lower <= value.upper + reference_.tolerance(), "lower bound", lower, value.lower, value.upper);
     claim(upper >= value.lower - reference_.tolerance(), "upper bound", upper, value.lower, value.upper);
-    const std::vector<ActionBounds> bounds = solver.action_bounds();
+    const aos::List<ActionBounds> bounds = solver.action_bounds();
     for (std::size_t action = 0; action < bounds.size(); ++action) {
       const Interval of_action = truth_[action];
       claim(bounds[action].lower <= of_action.upper + reference_.tolerance(), "lower bound of an action",
@@ -152,7 +153,7 @@ class Trial {
   Generator generator_;
   Problem problem_;
   Reference reference_;
-  std::vector<Interval> truth_;
+  aos::List<Interval> truth_;
   int step_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "aos/base/list.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace truth {
@@ -54,7 +55,7 @@ class Generator {
   std::size_t below(std::size_t count) { return std::uniform_int_distribution<std::size_t>{0, count - 1}(random_); }
 
  private:
-  using Weights = std::vector<std::pair<std::uint32_t, double>>;
+  using Weights = aos::List<std::pair<std::uint32_t, double>>;
 
   // A model under construction: rows in their order, and observations by what each next state shows.
   struct Draft {

@@ -8,14 +8,15 @@
 #include <limits>
 #include <map>
 
+#include "aos/base/list.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace truth {
 
 using aos::point_based::FlatModel;
 using Real = long double;
-using Values = std::vector<Real>;
-using Belief = std::vector<std::pair<std::uint32_t, Real>>;  // by state, ascending
+using Values = aos::List<Real>;
+using Belief = aos::List<std::pair<std::uint32_t, Real>>;  // by state, ascending
 
 struct Interval {
   Real lower = -std::numeric_limits<Real>::infinity();
@@ -28,7 +29,7 @@ class Reference {
     if (model.horizon == 0) {
       seen_.push_back(best_policy_values());
       for (std::size_t action = 0; action < model.actions; ++action) {
-        always_.push_back({policy_values(std::vector<std::size_t>(model.states, action))});
+        always_.push_back({policy_values(aos::List<std::size_t>(model.states, action))});
       }
       random_.push_back(random_values());
     } else {
@@ -38,7 +39,7 @@ class Reference {
   }
 
   // Of every action at a belief, with so many beliefs listed.
-  std::vector<Interval> action_values(const Belief& belief, std::size_t max_nodes) {
+  aos::List<Interval> action_values(const Belief& belief, std::size_t max_nodes) {
     nodes_.clear();
     known_.clear();
     node_of(belief, model_.horizon);
@@ -51,7 +52,7 @@ class Reference {
       for (std::size_t i = nodes_.size(); i-- > 0;) change = std::max(change, back_up(nodes_[i]));
       if (change == 0) break;
     }
-    std::vector<Interval> values(model_.actions);
+    aos::List<Interval> values(model_.actions);
     for (std::size_t action = 0; action < model_.actions; ++action) {
       values[action] = nodes_[0].branches.empty() ? Interval{} : value_of(nodes_[0].branches[action]);
     }
@@ -86,13 +87,13 @@ class Reference {
  private:
   struct Branch {
     Real reward = 0;
-    std::vector<std::pair<Real, std::size_t>> successors;
+    aos::List<std::pair<Real, std::size_t>> successors;
   };
   struct Node {
     Belief belief;
     std::size_t left;
     Interval value;
-    std::vector<Branch> branches;
+    aos::List<Branch> branches;
   };
 
   static Real expected(const Values& values, const Belief& belief) {
@@ -131,7 +132,7 @@ class Reference {
   }
 
   // By elimination: exact but for rounding.
-  Values policy_values(const std::vector<std::size_t>& policy) const {
+  Values policy_values(const aos::List<std::size_t>& policy) const {
     return solved([&](std::size_t state, auto&& add) { add(model_.row(state, policy[state]), 1); });
   }
   Values random_values() const {
@@ -144,7 +145,7 @@ class Reference {
   template <class RowsOf>
   Values solved(RowsOf&& rows_of) const {
     const std::size_t count = model_.states;
-    std::vector<Values> matrix(count, Values(count + 1, 0));
+    aos::List<Values> matrix(count, Values(count + 1, 0));
     for (std::size_t state = 0; state < count; ++state) {
       matrix[state][state] = 1;
       rows_of(state, [&](std::size_t row, Real share) {
@@ -173,7 +174,7 @@ class Reference {
 
   // Policies improved until nothing improves (Howard).
   Values best_policy_values() const {
-    std::vector<std::size_t> policy(model_.states, 0);
+    aos::List<std::size_t> policy(model_.states, 0);
     Values values;
     for (bool has_improved = true; has_improved;) {
       values = policy_values(policy);
@@ -192,7 +193,7 @@ class Reference {
   }
 
   std::size_t node_of(const Belief& belief, std::size_t left) {
-    std::vector<std::pair<std::uint32_t, std::uint64_t>> key{{0, left}};
+    aos::List<std::pair<std::uint32_t, std::uint64_t>> key{{0, left}};
     // Nearer than the tolerance allows for; equal beliefs by different ways are one.
     for (const auto& [state, probability] : belief) {
       key.emplace_back(state, static_cast<std::uint64_t>(std::llround(probability * 0x1p60L) >> 4));
@@ -201,14 +202,14 @@ class Reference {
     if (is_new) {
       const std::size_t layer = model_.horizon == 0 ? 0 : left;
       Interval value{-std::numeric_limits<Real>::infinity(), expected(seen_[layer], belief)};
-      for (const std::vector<Values>& same : always_) value.lower = std::max(value.lower, expected(same[layer], belief));
+      for (const aos::List<Values>& same : always_) value.lower = std::max(value.lower, expected(same[layer], belief));
       nodes_.push_back({belief, left, value, {}});
     }
     return entry->second;
   }
 
   void expand(std::size_t number) {
-    std::vector<Branch> branches(model_.actions);
+    aos::List<Branch> branches(model_.actions);
     for (std::size_t action = 0; action < model_.actions; ++action) {
       for (const auto& [state, probability] : nodes_[number].belief) {
         branches[action].reward += probability * model_.rewards[model_.row(state, action)];
@@ -249,11 +250,11 @@ class Reference {
 
   const FlatModel& model_;
   Real largest_ = 0;
-  std::vector<Values> seen_;                   // by decisions left
-  std::vector<std::vector<Values>> always_;    // by action, decisions left
-  std::vector<Values> random_;
-  std::vector<Node> nodes_;
-  std::map<std::vector<std::pair<std::uint32_t, std::uint64_t>>, std::size_t> known_;
+  aos::List<Values> seen_;                   // by decisions left
+  aos::List<aos::List<Values>> always_;    // by action, decisions left
+  aos::List<Values> random_;
+  aos::List<Node> nodes_;
+  std::map<aos::List<std::pair<std::uint32_t, std::uint64_t>>, std::size_t> known_;
 };
 
 }

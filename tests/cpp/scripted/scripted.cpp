@@ -66,8 +66,8 @@ namespace {
 const ScriptedModel& model = scripted_model;
 
 struct State {
-  std::vector<std::max_align_t> block =
-      std::vector<std::max_align_t>(model.state_bytes / sizeof(std::max_align_t) + 1);
+  aos::List<std::max_align_t> block =
+      aos::List<std::max_align_t>(model.state_bytes / sizeof(std::max_align_t) + 1);
   void* data() { return block.data(); }
 };
 

@@ -9,7 +9,8 @@
 #include <iterator>
 #include <span>
 #include <type_traits>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
@@ -56,7 +57,7 @@ class ScriptedDraws {
 
  private:
   int index(const auto& weights, bool scales) {
-    const std::vector<double> copied(std::begin(weights), std::end(weights));
+    const aos::List<double> copied(std::begin(weights), std::end(weights));
     return chosen(copied.data(), copied.size(), scales);
   }
   // Without `scales` the weights may leave a share in which no index is drawn.
@@ -73,13 +74,13 @@ class ScriptedDraws {
 struct ScriptedModel {
   std::size_t state_bytes;
   void (*prepare)();
-  const std::vector<GroundedAction>* actions;
+  const aos::List<GroundedAction>* actions;
   std::span<const SkillFacts> skills;
   void (*initial)(void* state, ScriptedDraws& draws);
   Step (*step)(void* state, int action, ScriptedDraws& draws);
   Ending (*ending)(const void* state);
   bool (*meets_precondition)(const void* state, int action, ScriptedDraws& draws);
-  std::vector<double> (*rollout_weights)(const void* state, ScriptedDraws& draws);  // of all actions
+  aos::List<double> (*rollout_weights)(const void* state, ScriptedDraws& draws);  // of all actions
   double (*state_value)(const void* state, ScriptedDraws& draws);
   void (*visit)(const void* state, ValueVisitor& visitor);
   bool (*is_saved)(const void* state);  // it is the same after it was written and read
@@ -110,7 +111,7 @@ constexpr ScriptedModel scripted_model_of() {
                                ScriptedDraws& draws) { return Model::meets_precondition(state_at<Model>(state), action, draws); },
       .rollout_weights =
           [](const void* state, ScriptedDraws& draws) {
-            std::vector<double> weights;
+            aos::List<double> weights;
             Model::rollout_weights(state_at<Model>(state), draws, [&](double weight) { weights.push_back(weight); });
             return weights;
           },

@@ -6,7 +6,7 @@
 namespace action_values_tests {
 
 TEST("A value is in the middle of its own bounds, and none is above that of the choice") {
-  std::vector<aos::ActionEstimate> estimates(3);
+  aos::List<aos::ActionEstimate> estimates(3);
   aos::set_between(estimates, {8, -4, 7}, {10, 8, 15}, 0);
   EXPECT_NEAR(estimates[0].q, 9, 1e-12);
   EXPECT_NEAR(estimates[1].q, 2, 1e-12);  // nothing else is known of it than that it is between -4 and 8

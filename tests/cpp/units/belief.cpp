@@ -107,14 +107,14 @@ TEST("Draws from a belief follow its weights") {
 TEST("Thinning out keeps heavy states as they are, tells what it drops, and changes no weight on average") {
   Problem problem = units::world(200, 1, 0.9);
   TableModel::take(problem);
-  std::vector<TableModel::State> states;
+  aos::List<TableModel::State> states;
   problem.starts.clear();
   for (std::uint32_t state = 0; state < 200; ++state) problem.starts.push_back({state, 1.0 / 200});
   TableModel::take(problem);
   aos::Sampler random{3};
   const Belief initial = Belief::initial(random);  // outlives the loop over its particles
   for (const auto& particle : initial.particles()) states.push_back(particle.state);
-  std::vector<double> sums(200, 0.0);
+  aos::List<double> sums(200, 0.0);
   constexpr int rounds = 4000;
   for (int round = 0; round < rounds; ++round) {
     aos::Gathering<TableModel> gathering;
@@ -148,7 +148,7 @@ TEST("Thinning out keeps heavy states as they are, tells what it drops, and chan
 TEST("Thinning out does not agree with a pattern in the order of the states") {
   aos::Sampler random{5};
   for (const double share : {0.25, 0.5}) {
-    std::vector<double> weights(4000, 1.0);
+    aos::List<double> weights(4000, 1.0);
     aos::thin_out(weights, static_cast<std::size_t>(share * 4000), random);
     double even = 0;
     double all = 0;

@@ -68,7 +68,7 @@ Problem doors() {
 }
 
 // The logarithms to base 3 of how much likelier texts are in the one state than in the other.
-std::vector<double> evidence(const Belief& belief) {
+aos::List<double> evidence(const Belief& belief) {
   Space space;
   EXPECT(space.reach(belief));
   EXPECT(space.leaves_out_observations());
@@ -81,7 +81,7 @@ std::vector<double> evidence(const Belief& belief) {
   }
   aos::Sampler random{3};
   aos::TabledObservation seen;
-  std::vector<double> result;
+  aos::List<double> result;
   for (int i = 0; i < 4'000; ++i) {
     tables.draw(table[0], random, seen);
     const double likelihood = tables.likelihood(table[0], seen);
@@ -132,7 +132,7 @@ TEST("A described distribution has the densities of the one that it describes, a
 
 struct Tree {
   explicit Tree(const Belief& belief, int horizon) { obstacle = tree.prepare(belief, horizon); }
-  std::vector<aos::ActionEstimate> searched(const Belief& belief, int horizon, std::uint64_t simulations) {
+  aos::List<aos::ActionEstimate> searched(const Belief& belief, int horizon, std::uint64_t simulations) {
     aos::Sampler random{7};
     tree.search_from_root({.simulations = simulations}, horizon, random, {});
     return tree.estimates(belief);

@@ -101,7 +101,7 @@ TEST("A draw from weights that code computes counts as more than a flag, and mor
     draw();
     return draws.cost() - before;
   };
-  const std::vector<double> weights(20, 0.05);
+  const aos::List<double> weights(20, 0.05);
   const double of_flag = cost([&] { draws.flag(0.5); });
   const double of_three = cost([&] { draws.choose(weights.data(), 3, 0.15); });
   const double of_twenty = cost([&] { draws.choose(weights.data(), 20, 1.0); });

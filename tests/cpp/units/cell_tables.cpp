@@ -21,7 +21,7 @@ aos::CellVariable large_variable(const State& any) { return variable_at(offsetof
 TEST("Each value of a variable with few values is a cell, and values that no example had share cell 0") {
   State state;
   auto variable = small_variable(state);
-  std::vector<double> numbers{5, 3, 4, 3};
+  aos::List<double> numbers{5, 3, 4, 3};
   EXPECT(variable.divide(numbers));
   EXPECT_EQUAL(variable.cells(), 4u);
   for (const auto& [value, cell] : {std::pair{2, 0}, {3, 1}, {4, 2}, {5, 3}, {6, 0}}) {
@@ -33,7 +33,7 @@ TEST("Each value of a variable with few values is a cell, and values that no exa
 TEST("A variable that does not differ among the examples has no cells") {
   const State state;
   auto variable = small_variable(state);
-  std::vector<double> numbers{7, 7, 7};
+  aos::List<double> numbers{7, 7, 7};
   EXPECT(!variable.divide(numbers));
 }
 
@@ -41,7 +41,7 @@ TEST("Reals and numbers of a wide range have ranges, which hold about as many ex
   State state;
   auto real = real_variable(state);
   auto large = large_variable(state);
-  std::vector<double> reals, numbers;
+  aos::List<double> reals, numbers;
   for (int i = 0; i < 2400; ++i) {
     reals.push_back(0.001 * i * i);
     numbers.push_back(10.0 * i);
@@ -50,7 +50,7 @@ TEST("Reals and numbers of a wide range have ranges, which hold about as many ex
   EXPECT(large.divide(numbers));
   EXPECT_EQUAL(real.cells(), 25u);
   EXPECT_EQUAL(large.cells(), 25u);
-  std::vector<int> held(25);
+  aos::List<int> held(25);
   for (int i = 0; i < 2400; ++i) {
     state.real = 0.001 * i * i;
     ++held[real.cell(&state)];
@@ -71,11 +71,11 @@ struct Fitted {
   using Function = std::function<double(const std::uint16_t* values)>;
 
   Fitted(const Function& function, double noise, int rounds = 8) {
-    std::vector<aos::CellVariable> all;
+    aos::List<aos::CellVariable> all;
     static const State state;
     for (std::size_t i = 0; i < variables; ++i) {
       all.push_back(small_variable(state));
-      std::vector<double> numbers{0, 1, 2, 3};
+      aos::List<double> numbers{0, 1, 2, 3};
       all.back().divide(numbers);
     }
     tables = aos::CellTables{all};
@@ -88,20 +88,20 @@ struct Fitted {
   }
 
   aos::CellTables tables;
-  std::vector<std::uint16_t> rows;
-  std::vector<double> targets;
+  aos::List<std::uint16_t> rows;
+  aos::List<double> targets;
 };
 
 TEST("A sum of functions of one variable each is found, and so are its variables") {
   const Fitted fitted{[](const std::uint16_t* row) { return 3.0 * (row[0] == 2) - 2.0 * row[2]; }, 0.1};
-  EXPECT((fitted.tables.used_variables() == std::vector<std::uint32_t>{0, 2}));
+  EXPECT((fitted.tables.used_variables() == aos::List<std::uint32_t>{0, 2}));
   const Fitted::Row row = {2, 1, 4, 3};
   EXPECT_NEAR(fitted.tables.value(row), 3 - 8, 0.05);
 }
 
 TEST("What depends on two variables together has a table of both") {
   const Fitted fitted{[](const std::uint16_t* row) { return (row[1] + row[3]) % 2 == 0 ? 1.0 : -1.0; }, 0.1};
-  EXPECT((fitted.tables.used_variables() == std::vector<std::uint32_t>{1, 3}));
+  EXPECT((fitted.tables.used_variables() == aos::List<std::uint32_t>{1, 3}));
   const Fitted::Row even = {1, 2, 1, 4};
   const Fitted::Row odd = {1, 2, 1, 3};
   EXPECT_NEAR(fitted.tables.value(even), 1, 0.05);

@@ -104,7 +104,7 @@ TEST("Strata of a continuous draw have the whole probability, in the middle and 
 
 TEST("One of 5000 weights is drawn where it is nearly all") {
   Sampler random{1};
-  std::vector<double> weights(5000, 1e-9);
+  aos::List<double> weights(5000, 1e-9);
   weights[4321] = 1;
   EXPECT_THAT(random.SampleDiscrete(-1, weights) == 4321, "5000 weights");
 }
@@ -114,8 +114,8 @@ TEST("Weights that sum to more than 1 are divided, and what is missing to 1 give
   int last = 0;
   int none = 0;
   for (int i = 0; i < 3000; ++i) {
-    last += random.SampleDiscrete(std::vector<double>{1, 1, 1}) == 2 ? 1 : 0;
-    none += random.SampleDiscrete(std::vector<double>{0.25, 0.25}) == -1 ? 1 : 0;
+    last += random.SampleDiscrete(aos::List<double>{1, 1, 1}) == 2 ? 1 : 0;
+    none += random.SampleDiscrete(aos::List<double>{0.25, 0.25}) == -1 ? 1 : 0;
   }
   EXPECT_THAT(std::abs(last - 1000) < 130 && std::abs(none - 1500) < 140, "five standard deviations");
 }

@@ -23,11 +23,11 @@ bool are_equal(const TraceLink& one, const TraceLink& other) {
 }
 
 // Half of the particles vanish at each step, and two come from each of the others: most blocks are needed no more soon.
-std::vector<TraceLink> grown(const std::vector<TraceLink>& before, std::uint64_t step) {
-  std::vector<TraceLink> after;
+aos::List<TraceLink> grown(const aos::List<TraceLink>& before, std::uint64_t step) {
+  aos::List<TraceLink> after;
   for (std::size_t i = 0; i < before.size(); ++i) {
     const std::uint64_t seed = step * before.size() + i;
-    std::vector<double> values(i % 3, static_cast<double>(seed));
+    aos::List<double> values(i % 3, static_cast<double>(seed));
     after.push_back(longer(before[i - i % 2], Block{std::move(values), seed, 0.5, 7}));
   }
   return after;
@@ -37,7 +37,7 @@ TEST("Traces come back as they were, with what they share, however often the fil
   const int descriptor = memfd_create("traces", 0);
   DescriptorFile file{descriptor};
   KeptTraces kept{file, 0, area_bytes};
-  std::vector<TraceLink> traces;
+  aos::List<TraceLink> traces;
   for (std::uint64_t i = 0; i < 1000; ++i) traces.push_back(begun_trace(Block{{}, i, 1, 0}));
   for (std::uint64_t step = 1; step <= 200; ++step) {
     kept.begin();
@@ -55,9 +55,9 @@ TEST("Traces come back as they were, with what they share, however often the fil
   const auto restored = later.restore(kept.extent());
   EXPECT_EQUAL(restored.size(), kept.extent().blocks);
   for (std::size_t i = 0; i < traces.size(); ++i) {
-    const auto& trace = restored.at(traces[i]->kept.number);
+    const auto& trace = restored[traces[i]->kept.number];
     EXPECT(are_equal(trace, traces[i]));
-    EXPECT_EQUAL(trace->origin == restored.at(traces[0]->kept.number)->origin, traces[i]->origin == traces[0]->origin);
+    EXPECT_EQUAL(trace->origin == restored[traces[0]->kept.number]->origin, traces[i]->origin == traces[0]->origin);
   }
   ::close(descriptor);
 }
@@ -67,7 +67,7 @@ TEST("Traces for which the file has no room are not kept, and are once there is 
   DescriptorFile file{descriptor};
   KeptTraces kept{file, 0, 1000};
   kept.begin();
-  kept.keep(begun_trace(Block{std::vector<double>(1000), 1, 1, 1}));
+  kept.keep(begun_trace(Block{aos::List<double>(1000), 1, 1, 1}));
   EXPECT(!kept.end());
   kept.begin();
   kept.keep(begun_trace(Block{{}, 1, 1, 1}));

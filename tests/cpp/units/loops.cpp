@@ -239,13 +239,13 @@ TEST("Numbers that a loop reports weigh its ends") {
 // A machine with `places` places: each leads to some others, and an end is reached from some. It is drawn with a seed.
 struct Machine {
   int places;
-  std::vector<std::vector<double>> weights;  // of places, then of two ends
+  aos::List<aos::List<double>> weights;  // of places, then of two ends
 
   explicit Machine(std::uint64_t seed) {
     aos::Sampler random{seed};
     places = 1 + random.below(12);
     for (int place = 0; place < places; ++place) {
-      std::vector<double> row(static_cast<std::size_t>(places) + 2, 0.0);
+      aos::List<double> row(static_cast<std::size_t>(places) + 2, 0.0);
       for (double& weight : row) weight = random.flag(0.3) ? random.uniform() : 0;
       row[static_cast<std::size_t>(random.below(places))] += random.uniform();
       row[static_cast<std::size_t>(places + random.below(2))] += 0.001 + random.uniform() * 0.05;
@@ -259,7 +259,7 @@ struct Machine {
   // The probability of the first end, by Gauss' elimination of (I - P) x = r in long doubles.
   double first_end() const {
     const auto n = static_cast<std::size_t>(places);
-    std::vector<std::vector<long double>> system(n, std::vector<long double>(n + 1));
+    aos::List<aos::List<long double>> system(n, aos::List<long double>(n + 1));
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j) system[i][j] = (i == j ? 1.0L : 0.0L) - weights[i][j];
       system[i][n] = weights[i][n];

@@ -123,7 +123,7 @@ point_based::FlatModel doors(NumberReports& reports) {
     model.likelihoods.first.push_back(side + 1);
     model.outcomes.elements.push_back({side, side, 1.0});
     for (int action = 0; action < 3; ++action) model.outcomes.first.push_back(side + 1);
-    model.rewards.insert(model.rewards.end(), {-1.0, side == 0 ? -100.0 : 10.0, side == 1 ? -100.0 : 10.0});
+    for (const double reward : {-1.0, side == 0 ? -100.0 : 10.0, side == 1 ? -100.0 : 10.0}) model.rewards.push_back(reward);
   }
   model.starts = {{1.0, {{0, 0.5}, {1, 0.5}}}};
   return model;
@@ -150,7 +150,7 @@ double value_of_numbers() {
   constexpr int points = 1501, steps = 161;
   constexpr double spacing = 30.0 / (points - 1);
   const auto odds_of = [&](int point) { return -15 + spacing * point; };
-  std::vector<double> value(points, 0.0), listened(points);
+  aos::List<double> value(points, 0.0), listened(points);
   for (int decision = 0; decision < 20; ++decision) {
     const auto at = [&](double odds) {
       const double place = std::clamp((odds + 15) / spacing, 0.0, points - 1.001);

@@ -7,7 +7,7 @@
 namespace number_index_tests {
 
 struct Words {
-  std::vector<std::string> all;
+  aos::List<std::string> all;
   aos::NumberIndex index;
 
   auto is(const std::string& word) const {

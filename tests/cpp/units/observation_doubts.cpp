@@ -10,7 +10,7 @@ using units::Problem;
 using units::TableModel;
 
 // A tree whose root has one action, after which each observation came so often. The rest of its 100 visits has ended.
-double told(const std::vector<std::uint32_t>& visits, double doubt_of_visit) {
+double told(const aos::List<std::uint32_t>& visits, double doubt_of_visit) {
   aos::SearchTree tree{1, std::size_t{1} << 20};
   tree.give_actions(0);
   const std::uint32_t action = tree.history(0).first_action;

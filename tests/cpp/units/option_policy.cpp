@@ -39,7 +39,7 @@ Problem two_rooms(double first, double second) {
 }
 
 // What each action is worth with so many decisions to go.
-std::vector<aos::ExactValue> exact_values(const Belief& belief, int decisions) {
+aos::List<aos::ExactValue> exact_values(const Belief& belief, int decisions) {
   aos::StateSpace<TableModel> space;
   space.reach(belief);
   const aos::ObservableValues observable{space.rows(), space.numbering(), decisions};

@@ -48,7 +48,7 @@ units::Problem lock() {
 }
 
 template <class Model>
-std::vector<aos::Option> ways(const units::Problem& problem, double& steps) {
+aos::List<aos::Option> ways(const units::Problem& problem, double& steps) {
   Model::take(problem);
   aos::Sampler random{1};
   const auto belief = aos::Belief<Model>::initial(random);

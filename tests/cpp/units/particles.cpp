@@ -177,8 +177,8 @@ TEST("Moves that keep the states which particles have passed are those that repe
     cloud = filter.after(std::move(cloud), seen, ignored_numbers).cloud;
   }
   EXPECT_THAT(cloud.history.steps()[0].is_guided, "steps are guided");
-  std::vector<Cloud<Shown>> moved;
-  std::vector<std::size_t> steps;
+  aos::List<Cloud<Shown>> moved;
+  aos::List<std::size_t> steps;
   for (const std::size_t bytes : {max_passage_bytes, std::size_t{0}}) {
     Sampler draws{7};
     Moves<Shown> moves{cloud.history, draws, bytes};

@@ -188,14 +188,14 @@ TEST("States that the robot always tells apart are in regions of their own, wort
 }
 
 TEST("Draws by columns have the weights that the columns were made of") {
-  for (const std::vector<double>& weights : {std::vector<double>{1.0}, {1.0, 3.0}, {0.001, 0.5, 0.2, 7.0, 0.0001}}) {
-    std::vector<aos::AliasColumns<int>::Weighted> outcomes;
+  for (const aos::List<double>& weights : {aos::List<double>{1.0}, {1.0, 3.0}, {0.001, 0.5, 0.2, 7.0, 0.0001}}) {
+    aos::List<aos::AliasColumns<int>::Weighted> outcomes;
     double total = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
       outcomes.push_back({static_cast<int>(i), weights[i]});
       total += weights[i];
     }
-    std::vector<aos::AliasColumn<int>> columns;
+    aos::List<aos::AliasColumn<int>> columns;
     aos::AliasColumns<int>{}.append(outcomes, total, columns);
     aos::Sampler random{11};
     std::map<int, int> counts;

@@ -9,7 +9,7 @@ namespace progress_tests {
 
 using units::TableModel;
 
-std::vector<std::string> told;
+aos::List<std::string> told;
 
 void take(const char* what, std::uint64_t, std::uint64_t) { told.emplace_back(what); }
 

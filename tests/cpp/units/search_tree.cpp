@@ -23,7 +23,7 @@ TEST("A child is found by its action and its observation, and by no others") {
 TEST("Few and many observations after an action are all found, also beside those of other actions") {
   aos::SearchTree tree{2, 8 * megabyte};
   tree.give_actions(0);
-  std::vector<std::uint32_t> children[2];
+  aos::List<std::uint32_t> children[2];
   for (int observation = 0; observation < 500; ++observation) {
     for (std::uint32_t action = 0; action < 2; ++action) {
       children[action].push_back(tree.add_child(action_of(tree, 0, action), observation - 100));

@@ -138,7 +138,7 @@ TEST("A later try is for half as many states in the belief, and lists fewer stat
   Problem problem = units::corridor(30'000, 0.9);
   for (std::uint32_t cell = 0; cell < 30'000; ++cell) units::row(problem, cell, 1) = {{1.0, cell, 0, 0.0}};  // no way back
   TableModel::take(problem);
-  const auto tries_from = [&](Space& space, std::vector<exam::Start> starts) {
+  const auto tries_from = [&](Space& space, aos::List<exam::Start> starts) {
     problem.starts = std::move(starts);
     return space.reach(initial_belief(problem));
   };

@@ -1,6 +1,7 @@
 // Small worlds for the tests, as the exam's tables.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "problem.hpp"
 #include "table_model.hpp"
 
@@ -30,7 +31,7 @@ inline Problem world(std::size_t states, std::size_t actions, double discount) {
   return problem;
 }
 
-inline std::vector<exam::Outcome>& row(Problem& problem, std::size_t state, std::size_t action) {
+inline aos::List<exam::Outcome>& row(Problem& problem, std::size_t state, std::size_t action) {
   return problem.rows[state * problem.actions + action];
 }
 

@@ -14,7 +14,7 @@ namespace exam {
 // Where the exact choice changes along a line: each between two probabilities. Unknown if the brackets stay too wide.
 struct Changes {
   bool is_known = true;
-  std::vector<std::pair<double, double>> between;
+  aos::List<std::pair<double, double>> between;
 };
 
 class BeliefLine {

@@ -1,6 +1,7 @@
 // How many states there are at least once those are taken together that no experiment can tell apart.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "flat.hpp"
 
 namespace exam {
@@ -8,8 +9,8 @@ namespace exam {
 // The running states that can be reached from a belief, by the coarsest partition whose states earn the same, lead to
 // the same parts by the same observations. Whoever takes fewer apart, changes the model.
 inline std::size_t told_apart(const Flat& flat, const Mass& from) {
-  std::vector<char> is_reached(flat.states(), 0);
-  std::vector<std::uint32_t> found;
+  aos::List<char> is_reached(flat.states(), 0);
+  aos::List<std::uint32_t> found;
   const auto reach = [&](std::uint32_t state) {
     if (!is_reached[state]) found.push_back(state);
     is_reached[state] = 1;
@@ -20,12 +21,12 @@ inline std::size_t told_apart(const Flat& flat, const Mass& from) {
       for (const Branch& branch : flat.branches(found[i], action)) reach(branch.next);
     }
   }
-  std::vector<std::uint32_t> part(flat.states(), 0);
+  aos::List<std::uint32_t> part(flat.states(), 0);
   for (std::size_t parts = 1;;) {
-    std::map<std::vector<std::int64_t>, std::uint32_t> signatures;
-    std::vector<std::uint32_t> next(flat.states(), 0);
+    std::map<aos::List<std::int64_t>, std::uint32_t> signatures;
+    aos::List<std::uint32_t> next(flat.states(), 0);
     for (const std::uint32_t state : found) {
-      std::vector<std::int64_t> signature{part[state]};
+      aos::List<std::int64_t> signature{part[state]};
       for (std::size_t action = 0; action < flat.actions(); ++action) {
         std::map<std::pair<int, std::uint32_t>, double> leads_to;
         for (const Branch& branch : flat.branches(state, action)) {

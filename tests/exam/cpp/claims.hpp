@@ -54,7 +54,7 @@ class Claims {
       check_numbers(exact);
       if (step == options_.steps) break;
       const int action = random_.below(TableModel::action_count());
-      std::vector<Reached> reached = plain_.reached(exact, static_cast<std::size_t>(action));
+      aos::List<Reached> reached = plain_.reached(exact, static_cast<std::size_t>(action));
       if (reached.empty()) break;
       const auto chosen = static_cast<std::size_t>(random_.below(static_cast<int>(reached.size())));
       const int seen = reached[chosen].observation;
@@ -121,7 +121,7 @@ class Claims {
     for (const int decisions : {1, 3, problem_.horizon}) {
       aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 3000, .work = 100'000'000}};
       try {
-        std::vector<double> values;
+        aos::List<double> values;
         for (const auto& of_action : evaluation.action_values(aos::exact_root(space, belief), decisions)) values.push_back(of_action.value);
         check_action_values("exact value of action ", values, exact, running, decisions);
       } catch (const aos::NotEnumerable&) {
@@ -130,7 +130,7 @@ class Claims {
     }
   }
 
-  void check_action_values(const std::string& claim, const std::vector<double>& values, const Mass& exact,
+  void check_action_values(const std::string& claim, const aos::List<double>& values, const Mass& exact,
                            double running, int decisions) {
     Truth& truth = truth_of(decisions);
     for (std::size_t i = 0; i < std::min(values.size(), max_actions); ++i) {
@@ -167,7 +167,7 @@ class Claims {
     }
     if (std::regex_search(why, found, listed)) check_states(std::stoul(found[1]), exact, why);
     if (planner.name() == std::string{"exact"}) {
-      std::vector<double> values;
+      aos::List<double> values;
       for (const aos::ActionEstimate& estimate : planner.estimates(belief)) values.push_back(estimate.q);
       check_action_values("value of action ", values, exact, running, problem_.horizon);
     }
@@ -177,7 +177,7 @@ class Claims {
 
   // What decisions say is proven of actions, for as many decisions as the horizon has.
   void check_proven(const Planner& planner, const Belief& belief, const Mass& exact, double running) {
-    const std::vector<aos::ActionEstimate> estimates = planner.estimates(belief);
+    const aos::List<aos::ActionEstimate> estimates = planner.estimates(belief);
     const auto values = planner.values(belief, estimates, planner.choice(estimates));
     Truth& truth = truth_of(problem_.horizon);
     for (std::size_t i = 0; i < std::min(values.size(), max_actions); ++i) {
@@ -222,7 +222,7 @@ class Claims {
   }
 
   // Of point-based search: what each action is worth at least.
-  void check_lower_values(const std::vector<aos::ActionEstimate>& estimates, const Mass& exact, double running,
+  void check_lower_values(const aos::List<aos::ActionEstimate>& estimates, const Mass& exact, double running,
                           int decisions) {
     Truth& truth = truth_of(decisions);
     for (std::size_t i = 0; i < std::min(estimates.size(), max_actions); ++i) {
@@ -379,7 +379,7 @@ class Claims {
     std::string claim, who, where, said;
     double lower, upper;
   };
-  std::vector<Finding> findings_;
+  aos::List<Finding> findings_;
 };
 
 }

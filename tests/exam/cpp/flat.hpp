@@ -7,12 +7,13 @@
 #include <map>
 #include <utility>
 
+#include "aos/base/list.hpp"
 #include "problem.hpp"
 
 namespace exam {
 
 // Sorted by state; the probabilities sum to 1.
-using Mass = std::vector<std::pair<std::uint32_t, double>>;
+using Mass = aos::List<std::pair<std::uint32_t, double>>;
 
 struct Branch {
   int observation;
@@ -54,7 +55,7 @@ class Flat {
   double discount() const { return problem_.discount; }
   double reward(std::size_t state, std::size_t action) const { return rewards_[state * actions() + action]; }
   // Sorted by observation.
-  const std::vector<Branch>& branches(std::size_t state, std::size_t action) const {
+  const aos::List<Branch>& branches(std::size_t state, std::size_t action) const {
     return branches_[state * actions() + action];
   }
 
@@ -64,14 +65,14 @@ class Flat {
     return sum;
   }
   // By observation; beliefs are of the part that goes on.
-  std::vector<Reached> reached(const Mass& belief, std::size_t action) const {
+  aos::List<Reached> reached(const Mass& belief, std::size_t action) const {
     std::map<int, std::map<std::uint32_t, double>> parts;
     for (const auto& [state, weight] : belief) {
       for (const Branch& branch : branches(state, action)) {
         parts[branch.observation][branch.next] += weight * branch.probability;
       }
     }
-    std::vector<Reached> result;
+    aos::List<Reached> result;
     for (const auto& [observation, part] : parts) {
       Reached reached{observation, 0, {part.begin(), part.end()}};
       for (const auto& entry : part) reached.probability += entry.second;
@@ -111,15 +112,15 @@ class Flat {
   // Two observations tell the same if each is as likely as the other, times a constant, wherever they are possible.
   void take_together() {
     for (std::size_t action = 0; action < actions(); ++action) {
-      std::map<int, std::vector<std::pair<std::uint64_t, double>>> likelihoods;
+      std::map<int, aos::List<std::pair<std::uint64_t, double>>> likelihoods;
       for (std::size_t state = 0; state < states(); ++state) {
         for (const Branch& branch : branches(state, action)) {
           likelihoods[branch.observation].emplace_back(state << 32 | branch.next, branch.probability);
         }
       }
-      std::map<std::vector<std::int64_t>, int> known;
+      std::map<aos::List<std::int64_t>, int> known;
       for (const auto& [observation, entries] : likelihoods) {
-        std::vector<std::int64_t> shape;
+        aos::List<std::int64_t> shape;
         for (const auto& [from_to, probability] : entries) {
           shape.push_back(static_cast<std::int64_t>(from_to));
           shape.push_back(std::llround(1e11 * probability / entries.front().second));
@@ -139,15 +140,15 @@ class Flat {
 
   const Problem& problem_;
   std::map<std::pair<std::size_t, int>, int> sights_;  // by action and observation
-  std::vector<double> rewards_;
-  std::vector<std::vector<Branch>> branches_;
+  aos::List<double> rewards_;
+  aos::List<aos::List<Branch>> branches_;
 };
 
 // What so many decisions at random are worth, by state.
-inline std::vector<double> random_values(const Flat& flat, int decisions) {
-  std::vector<double> values(flat.states(), 0.0);
+inline aos::List<double> random_values(const Flat& flat, int decisions) {
+  aos::List<double> values(flat.states(), 0.0);
   for (; decisions > 0; --decisions) {
-    std::vector<double> before(values.size(), 0.0);
+    aos::List<double> before(values.size(), 0.0);
     before.swap(values);
     for (std::size_t state = 0; state < flat.states(); ++state) {
       if (!flat.problem().is_running(state)) continue;
@@ -163,7 +164,7 @@ inline std::vector<double> random_values(const Flat& flat, int decisions) {
   return values;
 }
 
-inline double expected(const Mass& belief, const std::vector<double>& values) {
+inline double expected(const Mass& belief, const aos::List<double>& values) {
   double sum = 0;
   for (const auto& [state, weight] : belief) sum += weight * values[state];
   return sum;

@@ -37,7 +37,7 @@ inline aos::ActionEstimate value_alone(const aos::Belief<TableModel>& belief, in
 }
 
 // The best of the actions that were not chosen; -1 if none was tried.
-inline int runner_up(const std::vector<aos::ActionEstimate>& told, int chosen) {
+inline int runner_up(const aos::List<aos::ActionEstimate>& told, int chosen) {
   int other = -1;
   for (int action = 0; action < static_cast<int>(told.size()); ++action) {
     if (action == chosen || told[action].n == 0) continue;
@@ -102,9 +102,9 @@ inline std::string intervals_of(const Problem& problem, const IntervalOptions& o
     aos::Budget budget;
     budget.simulations = options.simulations;
     planner.search(aos::PlannerKind::pomcp, belief, budget, problem.horizon, random);
-    const std::vector<aos::ActionEstimate> estimates = planner.estimates(belief);
+    const aos::List<aos::ActionEstimate> estimates = planner.estimates(belief);
     const int chosen = planner.choice(estimates);
-    const std::vector<aos::ActionEstimate> told = planner.values(belief, estimates, chosen);
+    const aos::List<aos::ActionEstimate> told = planner.values(belief, estimates, chosen);
     const int other = runner_up(told, chosen);
     if (other >= 0) {
       const double running = belief.probability_of(aos::Ending::running);
@@ -122,7 +122,7 @@ inline std::string intervals_of(const Problem& problem, const IntervalOptions& o
       json.end_array();
     }
     const int walked = random.below(TableModel::action_count());
-    const std::vector<Reached> reached = plain.reached(exact, static_cast<std::size_t>(walked));
+    const aos::List<Reached> reached = plain.reached(exact, static_cast<std::size_t>(walked));
     if (reached.empty()) break;
     const Reached& next = reached[random.below(static_cast<int>(reached.size()))];
     belief = posterior_of(belief, walked, next.observation, random).first;

@@ -20,7 +20,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace exam {
 
@@ -47,16 +48,16 @@ struct Problem {
   int horizon = 0;
   std::size_t actions = 0;
   std::size_t variables = 0;
-  std::vector<std::size_t> irrelevant;  // variables that do not matter, and of which the engine is told so
-  std::vector<int> values;   // of the variables, state by state
-  std::vector<int> endings;  // of the states; 0 runs
-  std::vector<std::vector<Reading>> sensings;
-  std::vector<Start> starts;
-  std::vector<std::vector<Outcome>> rows;  // by state and action; none of a state that has ended
+  aos::List<std::size_t> irrelevant;  // variables that do not matter, and of which the engine is told so
+  aos::List<int> values;   // of the variables, state by state
+  aos::List<int> endings;  // of the states; 0 runs
+  aos::List<aos::List<Reading>> sensings;
+  aos::List<Start> starts;
+  aos::List<aos::List<Outcome>> rows;  // by state and action; none of a state that has ended
 
   std::size_t states() const { return endings.size(); }
   bool is_running(std::size_t state) const { return endings[state] == 0; }
-  const std::vector<Outcome>& row(std::size_t state, std::size_t action) const {
+  const aos::List<Outcome>& row(std::size_t state, std::size_t action) const {
     return rows[state * actions + action];
   }
 };

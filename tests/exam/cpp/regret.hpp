@@ -23,7 +23,7 @@ namespace exam {
 struct RegretOptions {
   std::uint64_t seed = 1;
   // "look-ahead" is exact look-ahead. In a build for ablations, "auto/prior+turns" is `auto` without these mechanisms.
-  std::vector<std::string> planners;
+  aos::List<std::string> planners;
   double seconds = 0.1;               // of processor time for a decision; 0: without this limit
   std::uint64_t simulations = 0;      // 0: without this limit
   int missions = 4;
@@ -88,12 +88,12 @@ class Regret {
   };
 
   void play_all(aos::JsonWriter& json, const std::string& name, const Mass& start, double optimum, double range) {
-    std::vector<double> regrets;
-    std::vector<double> returns;
+    aos::List<double> regrets;
+    aos::List<double> returns;
     double by_decisions = 0;
     Played worst;
     double highest = -INFINITY;
-    std::vector<double> times;  // of decisions, in seconds of processor time
+    aos::List<double> times;  // of decisions, in seconds of processor time
     Decision first{};
     std::optional<Planner> planner;
     const std::string own_name = with_switches(name);
@@ -147,7 +147,7 @@ class Regret {
     double mean = 0;
     double error = 0;  // its standard error
   };
-  static Mean mean_of(const std::vector<double>& numbers) {
+  static Mean mean_of(const aos::List<double>& numbers) {
     const auto count = static_cast<double>(numbers.size());
     Mean result;
     double squares = 0;
@@ -171,8 +171,8 @@ class Regret {
       const int action = decide(exact, belief, step);
       played.actions += (step > 0 ? " " : "") + std::to_string(action);
       const auto a = static_cast<std::size_t>(action);
-      const std::vector<Reached> all_reached = flat_.reached(exact, a);
-      std::vector<double> values;
+      const aos::List<Reached> all_reached = flat_.reached(exact, a);
+      aos::List<double> values;
       double later = 0;
       for (const Reached& reached : all_reached) {
         values.push_back(truth_.value(reached.belief, steps_ - step - 1).lower);
@@ -213,7 +213,7 @@ class Regret {
     budget.seconds = options_.seconds;
     budget.simulations = options_.simulations;
     planner.search(kind_of(name), belief, budget, problem_.horizon, random);
-    const std::vector<aos::ActionEstimate> estimates = planner.estimates(belief);
+    const aos::List<aos::ActionEstimate> estimates = planner.estimates(belief);
     const int action = planner.choice(estimates);
     const auto told = planner.values(belief, estimates, action)[action];
     return {action, planner.name(), planner.why(), told};
@@ -240,13 +240,13 @@ class Regret {
   int looked_ahead(const Mass& exact) {
     const double scale = std::max(flat_.largest_reward(), 1e-9);
     truth_.narrow(exact, problem_.horizon, 1e-6 * scale, 0.1);
-    std::vector<std::size_t> equal(flat_.actions());
+    aos::List<std::size_t> equal(flat_.actions());
     std::iota(equal.begin(), equal.end(), std::size_t{0});
     for (int left = problem_.horizon; left > 0 && equal.size() > 1; --left) {
-      std::vector<double> values;
+      aos::List<double> values;
       for (const std::size_t action : equal) values.push_back(truth_.action_value(exact, action, left).lower);
       const double best = *std::max_element(values.begin(), values.end());
-      std::vector<std::size_t> kept;
+      aos::List<std::size_t> kept;
       for (std::size_t i = 0; i < equal.size(); ++i) {
         if (values[i] >= best - 1e-9 * scale) kept.push_back(equal[i]);
       }
@@ -265,7 +265,7 @@ class Regret {
     return belief.back().first;
   }
   template <class Weighted>
-  static const Weighted& drawn_from(const std::vector<Weighted>& all, double uniform) {
+  static const Weighted& drawn_from(const aos::List<Weighted>& all, double uniform) {
     for (const Weighted& one : all) {
       if ((uniform -= one.probability) < 0) return one;
     }

@@ -163,18 +163,18 @@ struct TableModel {
   }
 
   template <class Random>
-  static std::size_t chosen(const std::vector<double>& weights, Random& random) {
+  static std::size_t chosen(const aos::List<double>& weights, Random& random) {
     if (weights.size() == 1) return 0;
     return static_cast<std::size_t>(random.choose(weights.data(), static_cast<int>(weights.size()), 1.0));
   }
 
   inline static const Problem* problem_ = nullptr;
-  inline static std::vector<aos::ByteRange> irrelevant_;
-  inline static std::vector<std::string> responses_;
-  inline static std::vector<State> states_;
-  inline static std::vector<std::size_t> slots_;
-  inline static std::vector<std::vector<double>> weights_;  // of the rows, then of the sensings
-  inline static std::vector<double> start_weights_;
+  inline static aos::List<aos::ByteRange> irrelevant_;
+  inline static aos::List<std::string> responses_;
+  inline static aos::List<State> states_;
+  inline static aos::List<std::size_t> slots_;
+  inline static aos::List<aos::List<double>> weights_;  // of the rows, then of the sensings
+  inline static aos::List<double> start_weights_;
 };
 
 // The belief after a response, and the probability of that; an empty belief where it is impossible.

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 
+#include "aos/base/list.hpp"
 #include "flat.hpp"
 
 namespace exam {
@@ -82,10 +83,10 @@ class Truth {
     double below_corners;  // how far the value is below the corners' plane
   };
   struct Layer {
-    std::vector<std::vector<double>> alphas;
-    std::vector<std::vector<double>> informed;  // by action
-    std::vector<double> corners;                // by state
-    std::vector<Point> points;
+    aos::List<aos::List<double>> alphas;
+    aos::List<aos::List<double>> informed;  // by action
+    aos::List<double> corners;                // by state
+    aos::List<Point> points;
     std::size_t kept_points = 32;  // after the last pruning
     std::size_t kept_alphas = 32;
   };
@@ -127,7 +128,7 @@ class Truth {
     return least;
   }
 
-  Bracket action_value(double reward, const std::vector<Reached>& all_reached, int left) const {
+  Bracket action_value(double reward, const aos::List<Reached>& all_reached, int left) const {
     Bracket bracket{reward, reward};
     for (const Reached& reached : all_reached) {
       const Bracket later = value(reached.belief, left - 1);
@@ -143,16 +144,16 @@ class Truth {
       Mass belief;
       int left;
     };
-    std::vector<Met> path;
+    aos::List<Met> path;
     Mass belief = from;
     double allowed = gap;
     const std::size_t max_depth = has_end() ? static_cast<std::size_t>(left) : 400;
     while (path.size() < max_depth && value(belief, left).gap() > allowed) {
       path.push_back({belief, left});
       double best = -std::numeric_limits<double>::infinity();
-      std::vector<Reached> chosen;
+      aos::List<Reached> chosen;
       for (std::size_t action = 0; action < flat_.actions(); ++action) {
-        std::vector<Reached> reached = flat_.reached(belief, action);
+        aos::List<Reached> reached = flat_.reached(belief, action);
         const double upper = action_value(flat_.expected_reward(belief, action), reached, left).upper;
         if (upper <= best) continue;
         best = upper;
@@ -191,22 +192,22 @@ class Truth {
 
   // The value, by state, of the action and then of the best known policies after each observation.
   void add_alpha(const Mass& belief, std::size_t action, int left) {
-    std::map<int, const std::vector<double>*> later;
+    std::map<int, const aos::List<double>*> later;
     if (!(has_end() && left == 1)) {
       for (const Reached& reached : flat_.reached(belief, action)) {
         later[reached.observation] = &best_alpha(reached.belief, left - 1);
       }
     }
-    const std::vector<double>* const usual =
+    const aos::List<double>* const usual =
         has_end() && left == 1 ? nullptr : &layer(left - 1).alphas.front();
-    std::vector<double> alpha(flat_.states(), 0.0);
+    aos::List<double> alpha(flat_.states(), 0.0);
     for (std::size_t state = 0; state < flat_.states(); ++state) {
       if (!flat_.problem().is_running(state)) continue;
       double value = flat_.reward(state, action);
       if (usual != nullptr) {
         for (const Branch& branch : flat_.branches(state, action)) {
           const auto found = later.find(branch.observation);
-          const std::vector<double>& values = found != later.end() ? *found->second : *usual;
+          const aos::List<double>& values = found != later.end() ? *found->second : *usual;
           value += flat_.discount() * branch.probability * values[branch.next];
         }
       }
@@ -217,7 +218,7 @@ class Truth {
     if (bounds.alphas.size() > 2 * bounds.kept_alphas) prune_alphas(bounds);
   }
 
-  const std::vector<double>& best_alpha(const Mass& belief, int left) const {
+  const aos::List<double>& best_alpha(const Mass& belief, int left) const {
     const auto& alphas = layer(left).alphas;
     return *std::max_element(alphas.begin(), alphas.end(), [&](const auto& one, const auto& other) {
       return expected(belief, one) < expected(belief, other);
@@ -226,7 +227,7 @@ class Truth {
 
   // Those that another one is nowhere worse than.
   static void prune_alphas(Layer& bounds) {
-    std::vector<std::vector<double>> kept;
+    aos::List<aos::List<double>> kept;
     for (auto alpha = bounds.alphas.rbegin(); alpha != bounds.alphas.rend(); ++alpha) {
       const bool is_dominated = std::any_of(kept.begin(), kept.end(), [&](const auto& other) {
         return std::equal(alpha->begin(), alpha->end(), other.begin(), std::less_equal<>{});
@@ -257,7 +258,7 @@ class Truth {
 
   // Those that say no more than the other ones, and all by the corners of now.
   void prune_points(Layer& bounds) {
-    std::vector<Point> points;
+    aos::List<Point> points;
     points.swap(bounds.points);
     std::reverse(points.begin(), points.end());
     for (Point& point : points) {
@@ -279,15 +280,15 @@ class Truth {
 
   void begin_layers() {
     rounding_ = 1e-13 * flat_.largest_reward() * decisions_;
-    const std::vector<double> nothing(flat_.states(), 0.0);
+    const aos::List<double> nothing(flat_.states(), 0.0);
     layers_[0].alphas.push_back(nothing);
     layers_[0].corners = nothing;
     layers_[0].informed.assign(flat_.actions(), nothing);
-    std::vector<std::vector<double>> blind(flat_.actions(), nothing);
+    aos::List<aos::List<double>> blind(flat_.actions(), nothing);
     for (std::size_t left = 1; left < layers_.size(); ++left) {
       Layer& bounds = layers_[left];
       for (std::size_t action = 0; action < flat_.actions(); ++action) {
-        const std::vector<double> later = blind[action];
+        const aos::List<double> later = blind[action];
         bounds.informed.push_back(nothing);
         each_running([&](std::size_t state) {
           blind[action][state] = once_more(state, action, later);
@@ -303,8 +304,8 @@ class Truth {
     const double largest = flat_.largest_reward() / (1 - flat_.discount());
     rounding_ = 1e-13 * largest;
     Layer& bounds = layers_.front();
-    std::vector<double> highest(flat_.states(), 0.0);
-    std::vector<double> lowest(flat_.states(), 0.0);
+    aos::List<double> highest(flat_.states(), 0.0);
+    aos::List<double> lowest(flat_.states(), 0.0);
     for (std::size_t state = 0; state < flat_.states(); ++state) {
       if (!flat_.problem().is_running(state)) continue;
       highest[state] = largest;
@@ -324,7 +325,7 @@ class Truth {
       return change;
     });
     for (std::size_t action = 0; action < flat_.actions(); ++action) {
-      std::vector<double> values = lowest;
+      aos::List<double> values = lowest;
       repeat(0.2 / static_cast<double>(flat_.actions()), [&] {
         double change = 0;
         each_running([&](std::size_t state) {
@@ -366,15 +367,15 @@ class Truth {
   }
 
   // The action, and then what `later` says.
-  double once_more(std::size_t state, std::size_t action, const std::vector<double>& later) const {
+  double once_more(std::size_t state, std::size_t action, const aos::List<double>& later) const {
     double value = flat_.reward(state, action);
     for (const Branch& branch : flat_.branches(state, action)) {
       value += flat_.discount() * branch.probability * later[branch.next];
     }
     return value;
   }
-  static std::vector<double> best_of(const std::vector<std::vector<double>>& values) {
-    std::vector<double> best = values.front();
+  static aos::List<double> best_of(const aos::List<aos::List<double>>& values) {
+    aos::List<double> best = values.front();
     for (const auto& more : values) {
       for (std::size_t state = 0; state < best.size(); ++state) best[state] = std::max(best[state], more[state]);
     }
@@ -382,7 +383,7 @@ class Truth {
   }
   // The state is seen now, and from the next step on only by observations.
   double informed_once_more(std::size_t state, std::size_t action,
-                            const std::vector<std::vector<double>>& later) const {
+                            const aos::List<aos::List<double>>& later) const {
     double value = flat_.reward(state, action);
     const auto& branches = flat_.branches(state, action);
     for (std::size_t first = 0; first < branches.size();) {
@@ -403,7 +404,7 @@ class Truth {
   const Flat& flat_;
   int decisions_;
   double rounding_ = 0;
-  std::vector<Layer> layers_;
+  aos::List<Layer> layers_;
 };
 
 }

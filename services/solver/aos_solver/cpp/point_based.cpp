@@ -1,4 +1,5 @@
 // Point-based search for the engine; compiled once for all models, whatever the size of their states.
+#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "point_based/constants.hpp"
 #include "point_based/online.hpp"
@@ -22,7 +23,7 @@ struct OnlineSarsop::Solver {
   explicit Solver(FlatModel flat) : model(std::move(flat)), outlook(model), regions(model), sarsop(model, regions) {}
 
   // Whether all states that are worth anything are in one region.
-  bool is_in_one_region(const std::vector<std::pair<std::uint32_t, double>>& belief) const {
+  bool is_in_one_region(const List<std::pair<std::uint32_t, double>>& belief) const {
     std::uint32_t region = nowhere;
     for (const auto& [state, probability] : belief) {
       if (regions.is_worthless(state)) continue;
@@ -92,7 +93,7 @@ OnlineSarsop::~OnlineSarsop() = default;
 
 void OnlineSarsop::start_over() { solver_->sarsop.start_over(); }
 
-bool OnlineSarsop::move_to(const std::vector<std::pair<std::uint32_t, double>>& belief) {
+bool OnlineSarsop::move_to(const List<std::pair<std::uint32_t, double>>& belief) {
   if (!solver_->is_in_one_region(belief)) return false;
   solver_->sarsop.move_to({1, belief}, max_graph_bytes);
   return true;
@@ -109,10 +110,10 @@ std::uint64_t OnlineSarsop::improve_below(std::uint32_t action, const IsOver& is
                          [&](const auto& is_enough) { return solver_->sarsop.improve_below(action, solver_->precision(), is_enough, is_over); });
 }
 
-std::vector<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::size_t steps, std::uint64_t max_work,
+List<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::size_t steps, std::uint64_t max_work,
                                               const IsOver& is_over, std::uint64_t& work) {
   constexpr std::size_t missions = 30;
-  std::vector<MissionLoss> found;
+  List<MissionLoss> found;
   const bool is_endless = solver_->model.horizon == 0;
   if (!solver_->sarsop.has_start() || !(is_endless || solver_->is_nearly_closed())) return found;
   const double precision = std::max(solver_->gap(), 0.2 * solver_->nearly_closed_gap());
@@ -134,8 +135,8 @@ std::optional<PolicyValue> OnlineSarsop::best_policy_anew(std::size_t steps, std
   return solver_->best_policy(steps, true, max_work, is_over, work);
 }
 
-std::vector<ActionBounds> OnlineSarsop::action_bounds() {
-  std::vector<ActionBounds> bounds = solver_->sarsop.action_bounds();
+List<ActionBounds> OnlineSarsop::action_bounds() {
+  List<ActionBounds> bounds = solver_->sarsop.action_bounds();
   const double below = solver_->below(), above = solver_->above();
   for (ActionBounds& action : bounds) {
     action.lower -= below;

@@ -1,3 +1,4 @@
+#include "aos/base/list.hpp"
 #include "aos/planning/values/cell_tables.hpp"
 
 #include <cmath>
@@ -6,12 +7,12 @@ namespace aos {
 
 namespace {
 
-double mean_of(const std::vector<double>& numbers) {
+double mean_of(const List<double>& numbers) {
   double sum = 0;
   for (const double number : numbers) sum += number;
   return sum / numbers.size();
 }
-double squares_around_mean(const std::vector<double>& numbers) {
+double squares_around_mean(const List<double>& numbers) {
   const double mean = mean_of(numbers);
   double sum = 0;
   for (const double number : numbers) sum += (number - mean) * (number - mean);
@@ -20,7 +21,7 @@ double squares_around_mean(const std::vector<double>& numbers) {
 
 }  // namespace
 
-bool CellVariable::divide(std::vector<double>& numbers) {
+bool CellVariable::divide(List<double>& numbers) {
   std::sort(numbers.begin(), numbers.end());
   lowest_ = numbers.front();
   const double range = numbers.back() - lowest_;
@@ -36,15 +37,15 @@ bool CellVariable::divide(std::vector<double>& numbers) {
   return true;
 }
 
-std::vector<std::uint32_t> CellTables::used_variables() const {
-  std::vector<std::uint32_t> used;
+List<std::uint32_t> CellTables::used_variables() const {
+  List<std::uint32_t> used;
   for (const Table& table : tables_) used.insert(used.end(), table.variables, table.variables + table.order);
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
   return used;
 }
 
-void CellTables::fit(const std::vector<std::uint16_t>& rows, const std::vector<double>& targets) {
+void CellTables::fit(const List<std::uint16_t>& rows, const List<double>& targets) {
   rows_ = rows.data();
   if (tables_.empty()) mean_ = mean_of(targets);
   left_.resize(targets.size());
@@ -110,8 +111,8 @@ void CellTables::add_table(double min_gain) {
   for (const double left : left_) squares += left * left;
   const double variance = squares / left_.size();
   take_columns(stride);
-  std::vector<Candidate> candidates;
-  const auto consider = [&](const Table& table, const std::vector<std::uint32_t>& places, std::uint32_t variable) {
+  List<Candidate> candidates;
+  const auto consider = [&](const Table& table, const List<std::uint32_t>& places, std::uint32_t variable) {
     const Table more = grown(table, variable);
     if (more.size <= max_table_cells && !is_there(more)) candidates.push_back({more, places.data(), columns_[variable].data(), table.size});
   };

@@ -1,3 +1,4 @@
+#include "aos/base/list.hpp"
 #include "numbers/compact_model.hpp"
 
 #include "aos/base/add_up.hpp"
@@ -7,7 +8,7 @@
 
 namespace aos {
 
-void CompactModel::add_row(std::vector<Outcome>& outcomes, float reward) {
+void CompactModel::add_row(List<Outcome>& outcomes, float reward) {
   constexpr double certain = 1 - 1e-9;
   std::ranges::sort(outcomes, {}, &Outcome::next);
   add_up_neighbours(outcomes, &Outcome::next, &Outcome::probability);
@@ -40,9 +41,9 @@ std::uint32_t CompactModel::number_of_reward(float reward) {
   return entry->second;
 }
 
-std::vector<float> CompactModel::values(double discount, int horizon) const {
+List<float> CompactModel::values(double discount, int horizon) const {
   const std::size_t count = first_.size();
-  std::vector<float> values(count, 0);
+  List<float> values(count, 0);
   for (int sweep = 0; sweep < horizon; ++sweep) {
     progress::tell("computing values of states", sweep, horizon);
     float change = 0;
@@ -60,7 +61,7 @@ std::vector<float> CompactModel::values(double discount, int horizon) const {
   return {};
 }
 
-[[gnu::optimize("O3")]] float CompactModel::best_at(std::size_t first, std::size_t last, float discount, const std::vector<float>& values) const {
+[[gnu::optimize("O3")]] float CompactModel::best_at(std::size_t first, std::size_t last, float discount, const List<float>& values) const {
   float best = -std::numeric_limits<float>::infinity();
   for (std::size_t at = first; at < last; at += length_at(at)) {
     float later = 0;

@@ -6,7 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <unordered_map>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
@@ -21,13 +22,13 @@ class CompactModel {
   void begin_state() { first_.push_back(static_cast<std::uint32_t>(words_.size())); }
   // Adds a row to the state that was begun last, or improves the reward of one that is alike. Sorts the outcomes. Throws
   // NotEnumerable where they are too many.
-  void add_row(std::vector<Outcome>& outcomes, float reward);
+  void add_row(List<Outcome>& outcomes, float reward);
   // Of four bytes, of all rows.
   std::size_t words() const { return words_.size(); }
 
   // The values of all states, in `horizon` sweeps at most, which go through the states in turn from either end, each value
   // from the newest others (Gauss and Seidel). Empty where they do not settle.
-  std::vector<float> values(double discount, int horizon) const;
+  List<float> values(double discount, int horizon) const;
 
  private:
   // A row is a reward and its outcomes. Its first word is the number of its reward, shifted, the number of outcomes, and
@@ -42,13 +43,13 @@ class CompactModel {
     return (words_[at] & 1) != 0 ? 2 : 1 + 2 * count;
   }
   std::uint32_t number_of_reward(float reward);
-  float best_at(std::size_t first, std::size_t last, float discount, const std::vector<float>& values) const;
+  float best_at(std::size_t first, std::size_t last, float discount, const List<float>& values) const;
 
-  std::vector<std::uint32_t> words_;  // the rows of all states
-  std::vector<std::uint32_t> first_;  // where the rows of each state begin
-  std::vector<float> rewards_;
+  List<std::uint32_t> words_;  // the rows of all states
+  List<std::uint32_t> first_;  // where the rows of each state begin
+  List<float> rewards_;
   std::unordered_map<float, std::uint32_t> reward_numbers_;
-  std::vector<std::uint32_t> row_;  // that is added
+  List<std::uint32_t> row_;  // that is added
 };
 
 }

@@ -1,3 +1,4 @@
+#include "aos/base/list.hpp"
 #include "numbers/exact.hpp"
 
 #include "aos/base/progress.hpp"
@@ -25,16 +26,16 @@ double normalise(Weighted& belief) {
 
 }  // namespace
 
-std::vector<ExactValue> ExactEvaluation::action_values(const Weighted& belief, int horizon) {
-  std::vector<ExactValue> values(rows_.actions);
+List<ExactValue> ExactEvaluation::action_values(const Weighted& belief, int horizon) {
+  List<ExactValue> values(rows_.actions);
   if (horizon <= 0 || belief.empty()) return values;
   for (std::size_t action = 0; action < values.size(); ++action) values[action] = action_value(belief, action, horizon);
   return values;
 }
 
-std::vector<double> ExactEvaluation::losses(Weighted belief, std::size_t action, int horizon, ExactLimits limits) {
+List<double> ExactEvaluation::losses(Weighted belief, std::size_t action, int horizon, ExactLimits limits) {
   constexpr std::size_t missions = 30;
-  std::vector<double> found;
+  List<double> found;
   const double total = normalise(belief);
   if (total <= 0) return found;
   limits_ = std::move(limits);
@@ -144,7 +145,7 @@ double ExactEvaluation::loss_of_mission(Weighted belief, std::size_t action, int
   return loss;
 }
 std::size_t ExactEvaluation::best_action(const Weighted& belief, int horizon) {
-  const std::vector<ExactValue> values = action_values(belief, horizon);
+  const List<ExactValue> values = action_values(belief, horizon);
   const auto is_worse = [](const ExactValue& one, const ExactValue& other) { return other.is_better_than(one); };
   return std::ranges::max_element(values, is_worse) - values.begin();
 }
@@ -165,7 +166,7 @@ ExactValue ExactEvaluation::best_value(Weighted belief, int horizon) {
 
 // Evaluates the actions in the order of their bounds.
 ExactValue ExactEvaluation::best_of_actions(const Weighted& belief, int horizon) {
-  std::vector<std::pair<double, std::size_t>> order;
+  List<std::pair<double, std::size_t>> order;
   work_ += per_belief + per_bound * belief.size() * rows_.actions;
   look();
   for (std::size_t action = 0; action < rows_.actions; ++action) order.emplace_back(-bound(belief, action, horizon), action);
@@ -181,7 +182,7 @@ ExactValue ExactEvaluation::best_of_actions(const Weighted& belief, int horizon)
 // An upper bound of the action's value; infinite if none is known.
 double ExactEvaluation::bound(const Weighted& belief, std::size_t action, int horizon) const {
   if (static_cast<std::size_t>(horizon) > observable_.layers()) return std::numeric_limits<double>::infinity();
-  const std::vector<double>& later = observable_.layer(horizon - 1);
+  const List<double>& later = observable_.layer(horizon - 1);
   double sum = 0;
   double magnitude = 0;
   for (const auto& [state, weight] : belief) {

@@ -11,6 +11,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "numbers/belief_key.hpp"
 #include "numbers/observable_values.hpp"
@@ -39,7 +40,7 @@ struct ExactValue {
 };
 
 // Numbers of states with weights, by ascending numbers.
-using Weighted = std::vector<std::pair<std::uint32_t, double>>;
+using Weighted = List<std::pair<std::uint32_t, double>>;
 
 class ExactEvaluation {
  public:
@@ -49,11 +50,11 @@ class ExactEvaluation {
       : rows_(rows), observable_(values), limits_(std::move(limits)) {}
 
   // The value of every action at a belief with `horizon` decisions to go. Throws NotEnumerable at a limit.
-  std::vector<ExactValue> action_values(const Weighted& belief, int horizon);
+  List<ExactValue> action_values(const Weighted& belief, int horizon);
 
   // What missions that begin with an action lose of its value, since they plan anew at each step: as many of some missions
   // as the limits allow.
-  std::vector<double> losses(Weighted belief, std::size_t action, int horizon, ExactLimits limits);
+  List<double> losses(Weighted belief, std::size_t action, int horizon, ExactLimits limits);
 
   // How often, discounted, missions that begin with an action take each action in each state, if they decide best: the
   // expected rewards by these weights add up to the action's value. Throws NotEnumerable at a limit.

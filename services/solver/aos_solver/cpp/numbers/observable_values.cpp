@@ -1,3 +1,4 @@
+#include "aos/base/list.hpp"
 #include "numbers/observable_values.hpp"
 
 #include <algorithm>
@@ -8,8 +9,8 @@
 
 namespace aos {
 
-MoreValues one_more_decision(const point_based::FlatModel& rows, const std::vector<double>& later, std::vector<double>& values,
-                             std::vector<float>* action_values) {
+MoreValues one_more_decision(const point_based::FlatModel& rows, const List<double>& later, List<double>& values,
+                             List<float>* action_values) {
   MoreValues more{0, -std::numeric_limits<double>::infinity()};
   for (std::size_t state = 0; state < rows.states; ++state) {
     double best = -std::numeric_limits<double>::infinity();
@@ -34,7 +35,7 @@ void ObservableValues::prepare(const point_based::FlatModel& rows, point_based::
   if (layers_.empty()) layers_.emplace_back(states(), 0.0);
   for (auto left = static_cast<int>(layers_.size()); left < horizon; ++left) {
     progress::tell("computing values of states", left, horizon);
-    std::vector<double> values(states(), std::numeric_limits<double>::infinity());
+    List<double> values(states(), std::numeric_limits<double>::infinity());
     one_more_decision(rows, layers_.back(), values);
     layers_.push_back(std::move(values));
   }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "aos/base/list.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace aos {
@@ -11,7 +12,7 @@ namespace aos {
 inline constexpr double settled_share = 1e-4;
 
 // The value of an action in a state, from those of the states after it.
-inline double backed_up(const point_based::FlatModel& rows, std::size_t row, const std::vector<double>& later) {
+inline double backed_up(const point_based::FlatModel& rows, std::size_t row, const List<double>& later) {
   return rows.rewards[row] + rows.discount * rows.later_value(row, later);
 }
 
@@ -23,8 +24,8 @@ struct MoreValues {
 
 // Writes the values of the model's listed states with one decision more to go, and those of their actions, by row, where
 // they are wanted.
-MoreValues one_more_decision(const point_based::FlatModel& rows, const std::vector<double>& later, std::vector<double>& values,
-                             std::vector<float>* action_values = nullptr);
+MoreValues one_more_decision(const point_based::FlatModel& rows, const List<double>& later, List<double>& values,
+                             List<float>* action_values = nullptr);
 
 // Values from 0 decisions to go on. States that are not listed are worth any amount.
 class ObservableValues {
@@ -39,11 +40,11 @@ class ObservableValues {
 
   std::size_t states() const { return numbering_.states; }
   std::size_t layers() const { return layers_.size(); }
-  const std::vector<double>& layer(int left) const { return layers_[left]; }
+  const List<double>& layer(int left) const { return layers_[left]; }
 
  private:
   point_based::Numbering numbering_;
-  std::vector<std::vector<double>> layers_;
+  List<List<double>> layers_;
 };
 
 }

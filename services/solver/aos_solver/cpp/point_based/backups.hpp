@@ -1,6 +1,7 @@
 // Backups: both bounds of a belief, from the bounds of its successors.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "point_based/belief_graph.hpp"
 
 namespace aos::point_based {
@@ -58,7 +59,7 @@ class Backups {
       if (node.point == nowhere) node.point = bound.add(node.belief, node.corner, node.upper);
       else bound.improve(node.point, node.corner, node.upper);
     }
-    std::erase_if(node.branches, [&](const Branch& branch) { return branch.upper < node.lower; });
+    erase_if(node.branches, [&](const Branch& branch) { return branch.upper < node.lower; });
     return has_moved;
   }
 
@@ -80,7 +81,7 @@ class Backups {
   // here. These plans are chosen as if nothing were known.
   void add_vector(Node& node, const Branch& branch) {
     const Move& move = regions_.all[node.region].moves[branch.action];
-    std::vector<double> values = move.rewards;
+    List<double> values = move.rewards;
     std::uint32_t length = node.left;
     double size = 0;
     if (!graph_.is_last(node)) {
@@ -148,8 +149,8 @@ class Backups {
   const Regions& regions_;
   BeliefGraph& graph_;
   std::uint64_t backups_ = 0;
-  std::vector<const AlphaVector*> chosen_;
-  std::vector<double> later_;
+  List<const AlphaVector*> chosen_;
+  List<double> later_;
 };
 
 }

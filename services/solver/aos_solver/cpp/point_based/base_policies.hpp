@@ -8,6 +8,7 @@
 // Missions are played by each in turns. The better half goes on, until one is left, and so does the policy that decided last.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "point_based/belief_graph.hpp"
 #include "point_based/constants.hpp"
@@ -30,7 +31,7 @@ class BasePolicies {
   [[gnu::optimize("O3")]] std::optional<PolicyValue> best(const Node& node, std::size_t steps, bool decides_anew, Asked is_over, Asked is_late, Uniform uniform) {
     decides_anew_ = decides_anew;
     const double worth = std::max(node.upper - node.lower, 0.0);  // of knowing all
-    std::vector<Candidate> candidates;
+    List<Candidate> candidates;
     for (const Policy& policy : policies_) candidates.push_back({&policy, policy.weight * worth});
     std::size_t missions = first_missions;
     while (true) {
@@ -46,7 +47,7 @@ class BasePolicies {
       }
       const std::size_t half = candidates.size() / 2;
       std::size_t place = 0;
-      std::erase_if(candidates, [&](const Candidate& candidate) {
+      erase_if(candidates, [&](const Candidate& candidate) {
         return place++ >= half && (decides_anew || candidate.policy != last_);
       });
       missions = half > 1 ? 2 * missions : most_missions;
@@ -134,7 +135,7 @@ class BasePolicies {
 
   // The action that a policy takes; any one if `is_late()` comes first.
   [[gnu::optimize("O3")]] std::uint32_t choice(const Belief& belief, std::uint32_t region, std::uint32_t left, const Candidate& candidate, Asked is_late) {
-    const std::vector<double> informed = graph_.informed_values(region, left, belief);
+    const List<double> informed = graph_.informed_values(region, left, belief);
     graph_.count_work(model_.actions * belief.size());
     std::uint32_t best = 0;
     double highest = -std::numeric_limits<double>::infinity();
@@ -164,8 +165,8 @@ class BasePolicies {
   }
 
   // By state of the region: the entropy of what is observed after an action.
-  [[gnu::optimize("O3")]] const std::vector<double>& doubts(std::uint32_t region, std::uint32_t action) {
-    std::vector<double>& known = doubts_[region * model_.actions + action];
+  [[gnu::optimize("O3")]] const List<double>& doubts(std::uint32_t region, std::uint32_t action) {
+    List<double>& known = doubts_[region * model_.actions + action];
     if (!known.empty()) return known;
     const Move& move = regions_.all[region].moves[action];
     for (std::uint32_t state = 0; state < regions_.all[region].states.size(); ++state) {
@@ -186,7 +187,7 @@ class BasePolicies {
   Posterior posterior_;
   bool decides_anew_ = false;
   const Policy* last_ = nullptr;  // that decided, if one did at the last search
-  std::vector<std::vector<double>> doubts_;  // [region * actions + action]
+  List<List<double>> doubts_;  // [region * actions + action]
 };
 
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <unordered_map>
 
+#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
 #include "numbers/belief_key.hpp"
@@ -57,7 +58,7 @@ class BeliefGraph {
     node.left = left;
     node.belief = belief;
     UpperBound& bound = upper_of(region, left);
-    const std::vector<double> informed = informed_values(node);
+    const List<double> informed = informed_values(node);
     node.corner = bound.corner_of(node.belief);
     node.upper = std::min(bound.of(node.belief, node.corner), *std::max_element(informed.begin(), informed.end()));
     node.seen_changes = bound.changes();
@@ -83,7 +84,7 @@ class BeliefGraph {
   UpperBound& upper_of(std::uint32_t region, std::uint32_t left) {
     std::unique_ptr<UpperBound>& bound = upper_[left * regions_.all.size() + region];
     if (!bound) {
-      std::vector<double> corners;
+      List<double> corners;
       for (const std::uint32_t state : regions_.all[region].states) corners.push_back(std::ranges::max(model_.of_actions(informed_[left], state)));
       bound = std::make_unique<UpperBound>(std::move(corners), rounding_, dense_);
     }
@@ -115,7 +116,7 @@ class BeliefGraph {
     if (node.is_expanded) return;
     node.is_expanded = true;
     work_ += model_.actions * (node.belief.size() + per_branch);
-    const std::vector<double> informed = informed_values(node);
+    const List<double> informed = informed_values(node);
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
       if (informed[action] < node.lower) continue;
       node.branches.push_back(closed_branch(node, action, informed[action]));
@@ -161,10 +162,10 @@ class BeliefGraph {
   }
 
   // An upper bound of each action's value: the value if the robot knew more.
-  std::vector<double> informed_values(const Node& node) const { return informed_values(node.region, node.left, node.belief); }
-  [[gnu::optimize("O3")]] std::vector<double> informed_values(std::uint32_t region, std::uint32_t left, const Belief& belief) const {
-    const std::vector<std::uint32_t>& states = regions_.all[region].states;
-    std::vector<double> sums(model_.actions, rounding_ * sizes_[left]);
+  List<double> informed_values(const Node& node) const { return informed_values(node.region, node.left, node.belief); }
+  [[gnu::optimize("O3")]] List<double> informed_values(std::uint32_t region, std::uint32_t left, const Belief& belief) const {
+    const List<std::uint32_t>& states = regions_.all[region].states;
+    List<double> sums(model_.actions, rounding_ * sizes_[left]);
     for (std::size_t i = 0; i < belief.size(); ++i) {
       const auto values = model_.of_actions(informed_[left], states[belief.states[i]]);
       const double probability = belief.probabilities[i];
@@ -225,7 +226,7 @@ class BeliefGraph {
   std::uint32_t uninformed_successor(std::uint32_t region, std::uint32_t left, std::uint32_t action,
                                      std::uint32_t observation_branch) {
     const Region& from = regions_.all[region];
-    std::vector<std::uint32_t>& known =
+    List<std::uint32_t>& known =
         uninformed_[(std::uint64_t{region} * informed_.size() + left) * model_.actions + action];
     if (known.empty()) {
       Belief belief;
@@ -332,19 +333,19 @@ class BeliefGraph {
   double rounding_;
   double negligible_ = 0;
   int kept_bits_ = 0;
-  std::vector<ActionValues> informed_;  // by layer
-  std::vector<double> sizes_;           // the largest absolute value of these, by layer
+  List<ActionValues> informed_;  // by layer
+  List<double> sizes_;           // the largest absolute value of these, by layer
   Tails tails_;
   double largest_value_ = 0;
-  std::vector<LowerBound> lower_;                   // by region
-  std::vector<std::unique_ptr<UpperBound>> upper_;  // by layer and region; those that were asked for
+  List<LowerBound> lower_;                   // by region
+  List<std::unique_ptr<UpperBound>> upper_;  // by layer and region; those that were asked for
   std::deque<Node> nodes_;
   std::unordered_map<BeliefKey, std::uint32_t, BeliefKey::Hash> index_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> uninformed_;  // by region, decisions left, action
+  std::unordered_map<std::uint64_t, List<std::uint32_t>> uninformed_;  // by region, decisions left, action
   std::size_t bytes_ = 0;
   std::uint64_t work_ = 0;
   Posterior posterior_;
-  std::vector<double> dense_;
+  List<double> dense_;
 };
 
 }

@@ -1,6 +1,7 @@
 // The nodes of a belief graph: the beliefs that were reached, their actions, and the successors of these.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "point_based/bounds.hpp"
 
 namespace aos::point_based {
@@ -21,7 +22,7 @@ struct Branch {
   double rest = 0;        // the probability that no successor holds
   double rest_upper = 0;  // an upper bound of what the rest adds to the value
   bool is_open = false;
-  std::vector<Successor> successors{};
+  List<Successor> successors{};
 };
 
 struct Node {
@@ -36,7 +37,7 @@ struct Node {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   bool is_expanded = false;
-  std::vector<Branch> branches;  // actions that may still be the best
+  List<Branch> branches;  // actions that may still be the best
 
   // The branch of an action; null if it was dropped.
   Branch* branch_of(std::uint32_t action) {

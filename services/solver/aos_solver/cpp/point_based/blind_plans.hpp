@@ -2,6 +2,7 @@
 // add at the end of another plan.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/initial_bounds.hpp"
 #include "point_based/regions.hpp"
@@ -14,7 +15,7 @@ namespace aos::point_based {
 class Tails {
  public:
   Tails() = default;
-  Tails(const FlatModel& model, const std::vector<ActionValues>& blind) {
+  Tails(const FlatModel& model, const List<ActionValues>& blind) {
     double power = 1;
     for (const ActionValues& values : blind) {
       min_value_ = -std::numeric_limits<double>::infinity();
@@ -40,26 +41,26 @@ class Tails {
   double min_value() const { return min_value_; }
 
  private:
-  std::vector<double> tails_;   // by decisions
-  std::vector<double> powers_;  // of the discount
+  List<double> tails_;   // by decisions
+  List<double> powers_;  // of the discount
   bool are_free_ = true;
   double min_value_ = 0;
 };
 
-inline bool is_nowhere_above(const std::vector<double>& values, const std::vector<double>& others) {
+inline bool is_nowhere_above(const List<double>& values, const List<double>& others) {
   return std::equal(values.begin(), values.end(), others.begin(), std::less_equal<>{});
 }
 
 // The lower bound of a region by the plans that repeat one action, without those that give nothing more.
-inline LowerBound blind_bound(const FlatModel& model, const Region& region, const std::vector<ActionValues>& blind,
+inline LowerBound blind_bound(const FlatModel& model, const Region& region, const List<ActionValues>& blind,
                               const Tails& tails) {
   const bool is_endless = model.horizon == 0;
   LowerBound lower;
-  std::vector<AlphaVector> vectors;
+  List<AlphaVector> vectors;
   for (std::uint32_t action = 0; action < model.actions; ++action) {
     const std::size_t first = vectors.size();
     for (std::uint32_t left = is_endless ? 0 : 1; left < blind.size(); ++left) {
-      std::vector<double> values;
+      List<double> values;
       for (const std::uint32_t state : region.states) values.push_back(blind[left][model.row(state, action)]);
       if (vectors.size() > first) {  // longer plans only where they give more
         const AlphaVector& before = vectors.back();

@@ -3,6 +3,7 @@
 
 #include <deque>
 
+#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "point_based/regions.hpp"
 
@@ -10,8 +11,8 @@ namespace aos::point_based {
 
 // A belief: the states with a positive probability, by their numbers in the region, ascending.
 struct Belief {
-  std::vector<std::uint32_t> states;
-  std::vector<double> probabilities;
+  List<std::uint32_t> states;
+  List<double> probabilities;
 
   std::size_t size() const { return states.size(); }
 };
@@ -20,16 +21,16 @@ struct Belief {
 struct AlphaVector {
   std::uint32_t action;
   std::uint32_t length;  // 0 without a horizon
-  std::vector<double> values;
+  List<double> values;
   double size = 0;  // the largest absolute value
 
-  AlphaVector(std::uint32_t of_action, std::uint32_t of_length, std::vector<double> of_states)
+  AlphaVector(std::uint32_t of_action, std::uint32_t of_length, List<double> of_states)
       : action(of_action), length(of_length), values(std::move(of_states)), size(largest_size(values)) {}
   bool is_gone() const { return values.empty(); }
 };
 
 // The sum of probabilities times values. A processor can add up the eight partial sums side by side.
-[[gnu::optimize("O3")]] double weighted_sum(const std::vector<double>& probabilities, auto&& value_of) {
+[[gnu::optimize("O3")]] double weighted_sum(const List<double>& probabilities, auto&& value_of) {
   constexpr std::size_t width = 8;
   double sums[width]{};
   const std::size_t whole = probabilities.size() / width * width;
@@ -40,7 +41,7 @@ struct AlphaVector {
   return ((sums[0] + sums[4]) + (sums[2] + sums[6])) + ((sums[1] + sums[5]) + (sums[3] + sums[7]));
 }
 
-inline double expected(const std::vector<double>& values, const Belief& belief) {
+inline double expected(const List<double>& values, const Belief& belief) {
   if (belief.size() == values.size()) {
     return weighted_sum(belief.probabilities, [&](std::size_t i) { return values[i]; });
   }
@@ -76,7 +77,7 @@ class LowerBound {
   std::size_t kept() const { return kept_; }
   // Removes the vectors that were given up. The others get new numbers.
   void close_gaps() {
-    std::erase_if(vectors_, [](const AlphaVector& vector) { return vector.is_gone(); });
+    erase_if(vectors_, [](const AlphaVector& vector) { return vector.is_gone(); });
   }
   // Keeps the initial vectors only.
   void keep_initial() {
@@ -104,7 +105,7 @@ class LowerBound {
 class UpperBound {
  public:
   // `rounding` is the relative error of the longest sum. `dense` is memory for a belief, all 0 between calls.
-  UpperBound(std::vector<double> corners, double rounding, std::vector<double>& dense)
+  UpperBound(List<double> corners, double rounding, List<double>& dense)
       : corners_(std::move(corners)), dense_(dense), rounding_(rounding) {
     for (const double value : corners_) highest_ = std::max(highest_, value);
     error_ = 4 * rounding * largest_size(corners_);
@@ -183,13 +184,13 @@ class UpperBound {
     drop = share * point.drop;
   }
 
-  std::vector<double> corners_;
-  std::vector<double>& dense_;
+  List<double> corners_;
+  List<double>& dense_;
   double highest_ = 0;
   double rounding_;
   double error_ = 0;  // the rounding error of a bound from the corners
-  std::vector<Point> points_;
-  std::vector<std::uint32_t> changes_;
+  List<Point> points_;
+  List<std::uint32_t> changes_;
 };
 
 }

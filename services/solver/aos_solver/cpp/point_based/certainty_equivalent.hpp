@@ -8,6 +8,7 @@
 
 #include <map>
 
+#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/initial_bounds.hpp"
@@ -43,13 +44,13 @@ class CertaintyEquivalent {
   }
 
   // One vector for each assumed state of a region; none if the region is too large.
-  std::vector<AlphaVector> vectors(std::uint32_t region) const {
-    std::vector<AlphaVector> vectors;
+  List<AlphaVector> vectors(std::uint32_t region) const {
+    List<AlphaVector> vectors;
     if (!is_planned(regions_.all[region])) return vectors;
     const std::size_t size = regions_.all[region].states.size();
     for (std::uint32_t taken = 0; taken < size; ++taken) {
       const auto first = values_.begin() + static_cast<std::ptrdiff_t>(first_of_[region] + taken * size);
-      vectors.emplace_back(best_action(region, taken), 0u, std::vector<double>(first, first + static_cast<std::ptrdiff_t>(size)));
+      vectors.emplace_back(best_action(region, taken), 0u, List<double>(first, first + static_cast<std::ptrdiff_t>(size)));
     }
     return vectors;
   }
@@ -73,7 +74,7 @@ class CertaintyEquivalent {
 
   // The size of a region up to which all regions have `max_pairs_` pairs of states at most.
   std::size_t largest_planned_size() const {
-    std::vector<std::size_t> sizes;
+    List<std::size_t> sizes;
     for (const Region& region : regions_.all) sizes.push_back(region.states.size());
     std::sort(sizes.begin(), sizes.end());
     std::size_t largest = 0, pairs = 0;
@@ -107,7 +108,7 @@ class CertaintyEquivalent {
       of_target_[target].clear();
     }
   }
-  static void add(std::vector<Landing>& landings, const Landing& landing) {
+  static void add(List<Landing>& landings, const Landing& landing) {
     const auto known = std::ranges::find(landings, landing.pair, &Landing::pair);
     if (known == landings.end()) landings.push_back(landing);
     else known->probability += landing.probability;
@@ -178,15 +179,15 @@ class CertaintyEquivalent {
   std::size_t largest_;  // size of a region that has plans of its own; 0: none has
   double lowest_ = 0;
   double scale_ = 0;
-  std::vector<std::size_t> first_of_;  // the first pair of each region
-  std::vector<double> values_;         // by pair
+  List<std::size_t> first_of_;  // the first pair of each region
+  List<double> values_;         // by pair
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> repeated_;  // the first pair of a region and an action
-  std::vector<Plan> plans_;
-  std::vector<std::size_t> first_landing_;  // of each target of each plan
-  std::vector<Landing> landings_;
-  std::vector<double> predicted_;
-  std::vector<std::vector<Landing>> of_target_;
-  std::vector<std::pair<double, double>> later_;  // by target: the value, and the sum of the absolute values in it
+  List<Plan> plans_;
+  List<std::size_t> first_landing_;  // of each target of each plan
+  List<Landing> landings_;
+  List<double> predicted_;
+  List<List<Landing>> of_target_;
+  List<std::pair<double, double>> later_;  // by target: the value, and the sum of the absolute values in it
 };
 
 }

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "aos/base/descriptor_file.hpp"
+#include "aos/base/list.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace aos::point_based {
@@ -36,8 +37,8 @@ class FlatFile {
   }
 
   template <class Number>
-  std::vector<Number> numbers(std::size_t count) {
-    std::vector<Number> read(count);
+  List<Number> numbers(std::size_t count) {
+    List<Number> read(count);
     if (!file_.read(reinterpret_cast<char*>(read.data()), static_cast<std::streamsize>(count * sizeof(Number)))) {
       throw std::runtime_error("the flat model ends too early");
     }
@@ -77,22 +78,22 @@ inline FlatModel read_flat_model(const std::string& path) {
 }
 
 inline void write_flat_model(DescriptorFile& file, const FlatModel& model) {
-  const auto put = [&]<class Number>(const std::vector<Number>& numbers) {
+  const auto put = [&]<class Number>(const List<Number>& numbers) {
     file.write(numbers.data(), numbers.size() * sizeof(Number));
   };
-  std::vector<double> weights;
-  std::vector<std::uint64_t> first_entry{0};
-  std::vector<detail::Entry> entries;
+  List<double> weights;
+  List<std::uint64_t> first_entry{0};
+  List<detail::Entry> entries;
   for (const auto& [weight, belief] : model.starts) {
     weights.push_back(weight);
     for (const auto& [state, probability] : belief) entries.push_back({state, 0, probability});
     first_entry.push_back(entries.size());
   }
   file.write("AOSFLAT1");
-  put(std::vector<std::uint64_t>{model.states, model.actions, model.observations, model.outcomes.elements.size(),
+  put(List<std::uint64_t>{model.states, model.actions, model.observations, model.outcomes.elements.size(),
                                  model.likelihoods.first.size() - 1, model.likelihoods.elements.size(), weights.size(),
                                  entries.size()});
-  put(std::vector<double>{model.discount});
+  put(List<double>{model.discount});
   put(model.rewards);
   put(model.outcomes.first);
   put(model.outcomes.elements);

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <span>
 #include <utility>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos::point_based {
 
@@ -22,14 +23,14 @@ struct Likelihood {
 // A belief in which a mission may start, and its probability. The robot is told which of the starts it is in.
 struct Start {
   double weight;
-  std::vector<std::pair<std::uint32_t, double>> belief;
+  List<std::pair<std::uint32_t, double>> belief;
 };
 
 // A list of rows, each with its own number of elements.
 template <class Element>
 struct Rows {
-  std::vector<std::uint64_t> first;
-  std::vector<Element> elements;
+  List<std::uint64_t> first;
+  List<Element> elements;
 
   const Element* begin(std::size_t row) const { return elements.data() + first[row]; }
   const Element* end(std::size_t row) const { return begin(row + 1); }
@@ -49,20 +50,20 @@ struct FlatModel {
   std::size_t observations = 0;
   double discount = 0;
   std::size_t horizon = 0;  // how many decisions are rewarded; 0: no end, discount below 1
-  std::vector<double> rewards;
+  List<double> rewards;
   Rows<Outcome> outcomes;  // by row(state, action)
   Rows<Likelihood> likelihoods;  // by sensing
-  std::vector<Start> starts;
+  List<Start> starts;
 
   std::size_t row(std::size_t state, std::size_t action) const { return state * actions + action; }
   std::span<const Outcome> outcomes_of(std::size_t state) const {
     return {outcomes.begin(row(state, 0)), outcomes.end(row(state, actions - 1))};
   }
   // Those of the values by row that are of a state's actions.
-  std::span<const double> of_actions(const std::vector<double>& values, std::size_t state) const { return {&values[row(state, 0)], actions}; }
+  std::span<const double> of_actions(const List<double>& values, std::size_t state) const { return {&values[row(state, 0)], actions}; }
 
   // The expected value of a row's next state.
-  double later_value(std::size_t row, const std::vector<double>& values) const {
+  double later_value(std::size_t row, const List<double>& values) const {
     double sum = 0;
     for (const Outcome& outcome : outcomes[row]) sum += outcome.probability * values[outcome.next];
     return sum;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/rounding.hpp"
@@ -13,7 +14,7 @@
 namespace aos::point_based {
 
 // Values of a state's actions, [state * actions + action]. Worthless and unreached states have 0.
-using ActionValues = std::vector<double>;
+using ActionValues = List<double>;
 
 struct TooLarge : std::length_error {
   using std::length_error::length_error;
@@ -54,8 +55,8 @@ class InitialBounds {
   }
 
   // By layer: the number of decisions that are left, or 0 without a horizon.
-  std::vector<ActionValues> informed;  // upper bounds
-  std::vector<ActionValues> blind;     // lower bounds: the action is repeated
+  List<ActionValues> informed;  // upper bounds
+  List<ActionValues> blind;     // lower bounds: the action is repeated
 
  private:
   // The work for one kind of bound; large models get at least `min_sweeps_` sweeps.
@@ -70,7 +71,7 @@ class InitialBounds {
     const bool looks = likelihoods_ * actions * static_cast<double>(model_.horizon) <= layer_operations_;
     informed.assign(1, ActionValues(model_.states * model_.actions, 0.0));
     blind = informed;
-    std::vector<double> best(model_.states, 0.0);
+    List<double> best(model_.states, 0.0);
     Gathered gathered;
     gathered.slot_of.assign(model_.observations, 0);
     for (std::size_t left = 1; left <= model_.horizon; ++left) {
@@ -107,7 +108,7 @@ class InitialBounds {
         lowest = std::min(lowest, model_.rewards[rows.elements.back()]);
       }
       rows.first.push_back(rows.elements.size());
-      const std::vector<double> same = settled_values(rows);
+      const List<double> same = settled_values(rows);
       const double shift = shift_of(same, rows).min;
       for (const std::uint32_t state : states_) {
         const double value = same[state] + shift;
@@ -121,7 +122,7 @@ class InitialBounds {
   // Upper bounds for a robot that observes the state after the next step (fast informed bound: Hauskrecht,
   // 2000). The sweeps begin with the fully observable values.
   ActionValues endless_informed_values() const {
-    const std::vector<double> values = endless_mdp_values();
+    const List<double> values = endless_mdp_values();
     ActionValues above(model_.states * model_.actions, 0.0);
     for (const std::uint32_t state : states_) {
       for (std::size_t action = 0; action < model_.actions; ++action) {
@@ -149,9 +150,9 @@ class InitialBounds {
   }
 
   // Upper bounds of the fully observable values.
-  std::vector<double> endless_mdp_values() const {
+  List<double> endless_mdp_values() const {
     const Rows<std::uint32_t> choices = different_rows();
-    std::vector<double> values = settled_values(choices);
+    List<double> values = settled_values(choices);
     const double shift = shift_of(values, choices).max;
     for (const std::uint32_t state : states_) {
       const double value = values[state] + shift + 4 * ulp * (std::abs(values[state]) + std::abs(shift));
@@ -161,8 +162,8 @@ class InitialBounds {
   }
 
   // The approximate value of each state's best row, by sweeps until all states are off by nearly the same.
-  std::vector<double> settled_values(const Rows<std::uint32_t>& choices) const {
-    std::vector<double> values(model_.states, 0.0);
+  List<double> settled_values(const Rows<std::uint32_t>& choices) const {
+    List<double> values(model_.states, 0.0);
     double outcomes = 0;
     for (const std::uint32_t row : choices.elements) outcomes += static_cast<double>(model_.outcomes[row].size());
     const double sweeps = std::max(operations_ / (outcomes + 1), min_sweeps_);
@@ -185,7 +186,7 @@ class InitialBounds {
     double max = -std::numeric_limits<double>::infinity();
   };
 
-  Shift shift_of(const std::vector<double>& values, const Rows<std::uint32_t>& choices) const {
+  Shift shift_of(const List<double>& values, const Rows<std::uint32_t>& choices) const {
     Shift shift;
     for (std::size_t number = 0; number < states_.size(); ++number) {
       double best = -std::numeric_limits<double>::infinity();
@@ -243,7 +244,7 @@ class InitialBounds {
   }
 
   // Sweeps `states_` in both directions, since values spread along their numbers. Returns the largest change.
-  double sweep(std::vector<double>& values, const Rows<std::uint32_t>& choices) const {
+  double sweep(List<double>& values, const Rows<std::uint32_t>& choices) const {
     double change = 0;
     const auto renew = [&](std::size_t number) {
       double& value = values[states_[number]];
@@ -260,7 +261,7 @@ class InitialBounds {
   }
 
   // The value of an action that is repeated as long as it leads nowhere else. `shift_of` corrects this estimate later.
-  double lasting_value(std::uint32_t state, std::size_t row, const std::vector<double>& values) const {
+  double lasting_value(std::uint32_t state, std::size_t row, const List<double>& values) const {
     double later = 0;
     double stays = 0;
     for (const auto& outcome : model_.outcomes[row]) {
@@ -288,9 +289,9 @@ class InitialBounds {
 
   // The values of the next actions after each observation. The memory is used again.
   struct Gathered {
-    std::vector<std::size_t> slot_of;
-    std::vector<std::uint32_t> seen;
-    std::vector<double> sums;  // [slot * actions + next action]
+    List<std::size_t> slot_of;
+    List<std::uint32_t> seen;
+    List<double> sums;  // [slot * actions + next action]
   };
 
   double informed_value(std::size_t row, const ActionValues& values, Gathered& gathered) const {
@@ -339,7 +340,7 @@ class InitialBounds {
   const FlatModel& model_;
   const Regions& regions_;
   double rounding_;
-  std::vector<std::uint32_t> states_;
+  List<std::uint32_t> states_;
   double likelihoods_ = 0;  // of all outcomes
   double highest_ = 0;
   double scale_ = 1e-300;

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "aos/base/function_ref.hpp"
+#include "aos/base/list.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace aos::point_based {
@@ -62,7 +63,7 @@ class OnlineSarsop {
 
   // Continues from a belief, by state, with the whole horizon left. The probabilities may sum to less than 1,
   // and the missing part is worth nothing. Returns whether the model's starts can lead to this belief.
-  bool move_to(const std::vector<std::pair<std::uint32_t, double>>& belief);
+  bool move_to(const List<std::pair<std::uint32_t, double>>& belief);
 
   // Runs trials until `is_over()`, until `max_work` is done (0: no limit), or until nothing is left to find out. The last trial
   // may be cut short, and `is_late()` cuts what it has found, too. Returns the work in operations (belief_graph.hpp).
@@ -74,7 +75,7 @@ class OnlineSarsop {
   // What `steps` decisions of missions earn less than the lower bound, which begin with an action and decide anew with the
   // whole horizon at each step; at most 30 missions. The last one may exceed the work a little. With a
   // horizon there are none before the bounds of the belief have nearly met. Adds the work to `work`.
-  std::vector<MissionLoss> losses(std::uint32_t action, std::size_t steps, std::uint64_t max_work, const IsOver& is_over,
+  List<MissionLoss> losses(std::uint32_t action, std::size_t steps, std::uint64_t max_work, const IsOver& is_over,
                                   std::uint64_t& work);
 
   // The best of some simple policies from the belief, by missions of `steps` decisions; none where the bounds have nearly met,
@@ -87,7 +88,7 @@ class OnlineSarsop {
 
   // The bounds of all actions at the belief moved to: discounted, over the whole horizon. These bounds and
   // those of `bounds` hold in spite of rounding.
-  std::vector<ActionBounds> action_bounds();
+  List<ActionBounds> action_bounds();
   // The bounds of the value of the belief moved to. Throws CrossedBounds.
   std::pair<double, double> bounds();
   // Some policy never returns less than the first number, which is at most 0, and no state is worth more than the second,

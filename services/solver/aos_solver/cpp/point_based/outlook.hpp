@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "aos/base/list.hpp"
 #include "point_based/flat_model.hpp"
 #include "point_based/rounding.hpp"
 
@@ -42,7 +43,7 @@ class Outlook {
   // A reward after t decisions loses its `share` at most t times. The sum of the losses is `share` times the values of
   // what is left after one decision, after two, and so on. Each value is at most that of the best state then.
   void add_errors(const FlatModel& model, double share) {
-    std::vector<double> best(model.states, 0.0), worst(model.states, 0.0), now(model.states);
+    List<double> best(model.states, 0.0), worst(model.states, 0.0), now(model.states);
     for (std::size_t left = 1; left < model.horizon; ++left) {
       above_ += renew<true>(model, best, now);
       below_ += renew<false>(model, worst, now);
@@ -55,7 +56,7 @@ class Outlook {
   // Extends the best, or the worst, fully observable value of each state by one decision. Returns the largest
   // size of a value on that side of 0.
   template <bool is_best>
-  static double renew(const FlatModel& model, std::vector<double>& values, std::vector<double>& now) {
+  static double renew(const FlatModel& model, List<double>& values, List<double>& now) {
     double furthest = 0;
     for (std::size_t state = 0; state < model.states; ++state) {
       for (std::size_t action = 0; action < model.actions; ++action) {

@@ -1,6 +1,7 @@
 // Bayes' rule between regions: what an action predicts from a belief, and the belief after an observation.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/regions.hpp"
 
@@ -82,11 +83,11 @@ class Posterior {
   }
 
  private:
-  std::vector<double> predicted_;  // by target
-  std::vector<double> dense_;      // by state; all 0 between calls
+  List<double> predicted_;  // by target
+  List<double> dense_;      // by state; all 0 between calls
   Belief belief_;
-  std::vector<std::uint32_t> weighted_;  // the states and their weights before they were normalised
-  std::vector<double> weights_;
+  List<std::uint32_t> weighted_;  // the states and their weights before they were normalised
+  List<double> weights_;
 };
 
 }

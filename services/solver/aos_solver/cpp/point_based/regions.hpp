@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
 #include "point_based/flat_model.hpp"
@@ -27,7 +28,7 @@ struct ObservationBranch {
   std::uint32_t observation;
   std::uint32_t region;
   bool is_ascending = true;  // the successors' states have ascending numbers
-  std::vector<Successor> successors;
+  List<Successor> successors;
 };
 
 // An action in a region. A target is a next state with its sensing.
@@ -36,15 +37,15 @@ struct Move {
     std::uint32_t target;
     double probability;
   };
-  std::vector<double> rewards;  // by local state
+  List<double> rewards;  // by local state
   Rows<Flow> flows;             // by local state
   std::size_t targets = 0;
-  std::vector<ObservationBranch> observation_branches;
+  List<ObservationBranch> observation_branches;
 };
 
 struct Region {
-  std::vector<std::uint32_t> states;
-  std::vector<Move> moves;  // by action
+  List<std::uint32_t> states;
+  List<Move> moves;  // by action
 };
 
 class Regions {
@@ -73,16 +74,16 @@ class Regions {
     return largest;
   }
 
-  std::vector<Region> all;
-  std::vector<std::uint32_t> region_of;  // of a state; nowhere if it is worthless or never reached
-  std::vector<std::uint32_t> local_of;   // a state's number in its region
+  List<Region> all;
+  List<std::uint32_t> region_of;  // of a state; nowhere if it is worthless or never reached
+  List<std::uint32_t> local_of;   // a state's number in its region
 
  private:
   // The largest set of states without rewards that no action leaves: those from which no reward can be reached.
   std::vector<bool> worthless_states() const {
     const Rows<std::uint32_t> before = predecessors();
     std::vector<bool> worthless(model_.states, true);
-    std::vector<std::uint32_t> found;
+    List<std::uint32_t> found;
     const auto find = [&](std::uint32_t state) {
       if (!worthless[state]) return;
       worthless[state] = false;
@@ -193,7 +194,7 @@ class Regions {
         region_of[root] = static_cast<std::uint32_t>(all.size());
         all.emplace_back();
       }
-      std::vector<std::uint32_t>& states = all[region_of[root]].states;
+      List<std::uint32_t>& states = all[region_of[root]].states;
       region_of[state] = region_of[root];
       local_of[state] = static_cast<std::uint32_t>(states.size());
       states.push_back(state);
@@ -237,11 +238,11 @@ class Regions {
   }
 
   const FlatModel& model_;
-  std::vector<std::uint32_t> parent_;  // of a state, in the forest of united states
+  List<std::uint32_t> parent_;  // of a state, in the forest of united states
   std::vector<bool> is_united_;        // with another state
   std::vector<bool> is_worthless_;
   std::vector<bool> is_reached_;
-  std::vector<std::uint32_t> reached_;
+  List<std::uint32_t> reached_;
   NumberIndex targets_;   // of an action in a region
   NumberIndex branches_;  // of that action's observations
 };

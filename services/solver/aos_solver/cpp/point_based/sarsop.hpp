@@ -10,6 +10,7 @@
 #include <string>
 #include <tuple>
 
+#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "point_based/backups.hpp"
 #include "point_based/base_policies.hpp"
@@ -83,8 +84,8 @@ class Sarsop {
   }
 
   // The bounds of all actions at the only start.
-  std::vector<ActionBounds> action_bounds() {
-    std::vector<ActionBounds> bounds(model_.actions);
+  List<ActionBounds> action_bounds() {
+    List<ActionBounds> bounds(model_.actions);
     if (roots_.empty()) return bounds;
     const double weight = roots_.front().weight;
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
@@ -104,7 +105,7 @@ class Sarsop {
   // left out, since a step counts by what it is expected to change of the lower bound. At `is_over()` the mission breaks off, since
   // decisions without a search would be others: what is left of it loses as much as what was played. `uniform()` draws.
   MissionLoss loss_of_mission(std::uint32_t action, std::size_t steps, double precision, Asked is_over, Asked is_late, Uniform uniform) {
-    const std::vector<std::uint32_t> begun = trial_.begun();
+    const List<std::uint32_t> begun = trial_.begun();
     std::uint32_t number = roots_.front().node;
     graph_.refresh_lower(graph_[number]);
     double promised = graph_[number].lower;
@@ -158,12 +159,12 @@ class Sarsop {
     constexpr std::size_t between_looks = 64;  // at the clock, in beliefs
     backups_.vectors_added = 0;
     patience_ *= 2;
-    std::vector<std::vector<bool>> is_best(regions_.all.size());
+    List<std::vector<bool>> is_best(regions_.all.size());
     for (std::uint32_t region = 0; region < is_best.size(); ++region) {
       is_best[region].resize(graph_.lower(region).size());
     }
     std::vector<bool> is_reached(graph_.size());
-    std::vector<std::uint32_t> waiting;
+    List<std::uint32_t> waiting;
     const auto reach = [&](std::uint32_t number) {
       if (is_reached[number]) return;
       is_reached[number] = true;
@@ -204,7 +205,7 @@ class Sarsop {
 
   void add_start(const Start& start) {
     Belief belief;
-    std::vector<std::pair<std::uint32_t, double>> entries;
+    List<std::pair<std::uint32_t, double>> entries;
     double total = 0;
     std::uint32_t region = nowhere;
     for (const auto& [state, probability] : start.belief) {
@@ -257,7 +258,7 @@ class Sarsop {
     idle_ = 0;
     std::uint32_t best = graph_.lower(graph_[number].region)[graph_[number].vector].action;
     double highest = -std::numeric_limits<double>::infinity();
-    std::vector<double> uppers;
+    List<double> uppers;
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
       if (is_late()) return {best, false};
       const Branch branch = opened(number, action);
@@ -320,7 +321,7 @@ class Sarsop {
   Backups backups_{model_, regions_, graph_};
   BasePolicies policies_{model_, regions_, graph_};
   Trial trial_{model_, graph_, backups_};
-  std::vector<Root> roots_;
+  List<Root> roots_;
   std::uint32_t persisted_ = 0;  // how many actions were repeated from the current roots
   std::size_t patience_ = 1;     // how many times as many vectors are added before they are pruned
   int idle_ = 0;                 // how many trials in a row have learnt nothing

@@ -1,6 +1,7 @@
 // Trials: paths from a belief into the graph, along which actions are opened.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "point_based/backups.hpp"
 #include "point_based/belief_graph.hpp"
@@ -16,10 +17,10 @@ class Trial {
       : model_(model), graph_(graph), backups_(backups), begun_(model.actions) {}
 
   // The nodes of the last trial, from its start on.
-  const std::vector<std::uint32_t>& path() const { return path_; }
+  const List<std::uint32_t>& path() const { return path_; }
   // How many sampled trials began with each action.
-  const std::vector<std::uint32_t>& begun() const { return begun_; }
-  void set_begun(std::vector<std::uint32_t> begun) { begun_ = std::move(begun); }
+  const List<std::uint32_t>& begun() const { return begun_; }
+  void set_begun(List<std::uint32_t> begun) { begun_ = std::move(begun); }
   void forget_begun() { begun_.assign(model_.actions, 0); }
   // Begins again with the upper bound.
   void start_over() { sampled_ = 0; }
@@ -84,7 +85,7 @@ class Trial {
   }
 
   // The successor whose gap exceeds `allowed` by most, weighted by its probability; null if there is none.
-  const Successor* widest_of(const std::vector<Successor>& successors, double allowed) {
+  const Successor* widest_of(const List<Successor>& successors, double allowed) {
     const Successor* widest = nullptr;
     double widest_excess = 0;
     for (const Successor& successor : successors) {
@@ -134,8 +135,8 @@ class Trial {
   const FlatModel& model_;
   BeliefGraph& graph_;
   Backups& backups_;
-  std::vector<std::uint32_t> path_;
-  std::vector<std::uint32_t> begun_;
+  List<std::uint32_t> path_;
+  List<std::uint32_t> begun_;
   std::uint64_t sampled_ = 0;
   bool has_learnt_ = false;
 };

@@ -17,7 +17,7 @@ using point_based::Sarsop;
 
 inline void write_policy(int descriptor, const Regions& regions, const Sarsop& solver) {
   DescriptorFile file{descriptor};
-  const auto put = [&]<class Number>(const std::vector<Number>& numbers) {
+  const auto put = [&]<class Number>(const aos::List<Number>& numbers) {
     file.write(numbers.data(), numbers.size() * sizeof(Number));
   };
   JsonWriter sizes;
@@ -30,7 +30,7 @@ inline void write_policy(int descriptor, const Regions& regions, const Sarsop& s
   file.write("\n");
   for (std::uint32_t number = 0; number < regions.all.size(); ++number) {
     const LowerBound& bound = solver.graph().lower(number);
-    std::vector<std::uint32_t> actions;
+    aos::List<std::uint32_t> actions;
     for (std::uint32_t i = 0; i < bound.size(); ++i) {
       if (!bound[i].is_gone()) actions.push_back(bound[i].action);
     }

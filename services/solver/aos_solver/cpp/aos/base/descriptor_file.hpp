@@ -9,7 +9,8 @@
 #include <cerrno>
 #include <cstddef>
 #include <string_view>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
@@ -71,7 +72,7 @@ class DescriptorFile {
   int descriptor_;
   off_t place_ = 0;
   bool is_good_ = descriptor_ >= 0;
-  std::vector<char> unwritten_;
+  List<char> unwritten_;
 };
 
 }

@@ -2,7 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
@@ -13,7 +14,7 @@ inline std::uint64_t mixed(std::uint64_t hash, std::uint64_t more) {
 }
 
 struct NumbersHash {
-  std::size_t operator()(const std::vector<std::uint64_t>& numbers) const {
+  std::size_t operator()(const List<std::uint64_t>& numbers) const {
     std::uint64_t hash = 0;
     for (const std::uint64_t number : numbers) hash = mixed(hash, number);
     return hash;

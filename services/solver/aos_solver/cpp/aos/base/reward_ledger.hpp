@@ -3,7 +3,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
@@ -29,10 +30,10 @@ class RewardLedger {
     of_phase_ = 0;
   }
 
-  const std::vector<RewardTerm>& terms() const { return terms_; }
+  const List<RewardTerm>& terms() const { return terms_; }
 
  private:
-  std::vector<RewardTerm> terms_;
+  List<RewardTerm> terms_;
   double of_phase_ = 0;
 };
 

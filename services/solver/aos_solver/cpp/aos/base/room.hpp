@@ -3,19 +3,20 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
 template <class T>
-std::vector<T> with_room_for(std::size_t capacity) {
-  std::vector<T> list;
+List<T> with_room_for(std::size_t capacity) {
+  List<T> list;
   list.reserve(capacity);
   return list;
 }
 
 // Whether `more` further elements fit into the list.
 template <class T>
-bool has_room_for(const std::vector<T>& list, std::size_t more) { return list.size() + more <= list.capacity(); }
+bool has_room_for(const List<T>& list, std::size_t more) { return list.size() + more <= list.capacity(); }
 
 }

@@ -6,15 +6,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
-#include <vector>
 
 #include "aos/base/function_ref.hpp"
+#include "aos/base/list.hpp"
 
 namespace aos {
 
 // Returns the places of `count` elements in their order. Where neither of two is before the other, the first stays first.
-inline std::vector<std::uint32_t> stable_order(std::size_t count, FunctionRef<bool(std::uint32_t, std::uint32_t)> is_before) {
-  std::vector<std::uint32_t> places(count);
+inline List<std::uint32_t> stable_order(std::size_t count, FunctionRef<bool(std::uint32_t, std::uint32_t)> is_before) {
+  List<std::uint32_t> places(count);
   std::iota(places.begin(), places.end(), std::uint32_t{0});
   std::stable_sort(places.begin(), places.end(), is_before);
   return places;
@@ -24,7 +24,7 @@ template <class Iterator, class IsBefore>
 void sort_stably(Iterator first, Iterator last, IsBefore is_before) {
   const auto at = [first](std::uint32_t place) -> decltype(auto) { return first[static_cast<std::ptrdiff_t>(place)]; };
   const auto count = static_cast<std::size_t>(last - first);
-  std::vector<std::uint32_t> from = stable_order(count, [&](std::uint32_t one, std::uint32_t other) { return is_before(at(one), at(other)); });
+  List<std::uint32_t> from = stable_order(count, [&](std::uint32_t one, std::uint32_t other) { return is_before(at(one), at(other)); });
   for (std::uint32_t start = 0; start < count; ++start) {
     // Around a cycle of places each element goes to its own.
     std::uint32_t to = start;

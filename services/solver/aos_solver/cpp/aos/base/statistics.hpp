@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
@@ -20,7 +21,7 @@ double entropy_of(const Elements& elements, Of of = {}) {
 }
 
 // The largest absolute value of some numbers; 0 of none.
-inline double largest_size(const std::vector<double>& numbers) {
+inline double largest_size(const List<double>& numbers) {
   double largest = 0;
   for (const double number : numbers) largest = std::max(largest, std::abs(number));
   return largest;

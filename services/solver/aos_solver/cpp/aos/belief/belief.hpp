@@ -6,6 +6,7 @@
 // the exact one. If steps cannot be enumerated, the belief is drawn from then on: see drawn_step.hpp.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/drawn_step.hpp"
 #include "aos/belief/effort.hpp"
@@ -36,7 +37,7 @@ inline constexpr double negligible_rounding = 1e-9;  // of a sum of weights
 // What a belief becomes after an observation that it held impossible.
 enum class ImpossiblePolicy { hold, widen, reset };
 
-using ObservationOdds = std::vector<std::pair<Observation, double>>;
+using ObservationOdds = List<std::pair<Observation, double>>;
 
 template <class Model>
 class Belief {
@@ -44,7 +45,7 @@ class Belief {
   using State = typename Model::State;
   using Particle = aos::Particle<Model>;
 
-  const std::vector<Particle>& particles() const { return cloud_.particles; }
+  const List<Particle>& particles() const { return cloud_.particles; }
   // Whether it is the exact belief, but for differences that nobody would notice.
   bool is_exact() const { return error_bound_ <= negligible_error; }
   // Whether the states were drawn at random.
@@ -63,7 +64,7 @@ class Belief {
   }
   // How the particles of a drawn belief came to be, if that is known.
   const History<Model>& history() const { return cloud_.history; }
-  const std::vector<Lineage>& lineages() const { return cloud_.lineages; }
+  const List<Lineage>& lineages() const { return cloud_.lineages; }
   bool has_traces() const { return cloud_.has_traces(); }
   // No event's probability is further than this from that of the exact belief. It is 1 if steps were sampled.
   double error_bound() const { return error_bound_; }
@@ -312,7 +313,7 @@ class Belief {
   Belief changed_by_drawing(auto&& change, Sampler& random) const {
     Gathering<Model> gathering;
     Replay replay;
-    const std::vector<double> none;
+    const List<double> none;
     for (const auto& [state, weight] : particles()) {
       const double trials = std::max(1.0, std::ceil(weight * particle_count));
       for (double trial = 0; trial < trials; ++trial) {
@@ -334,7 +335,7 @@ class Belief {
   }
 
   Cloud<Model> cloud_;  // with lineages where it is drawn
-  std::vector<double> cumulative_;
+  List<double> cumulative_;
   double error_bound_ = 0;
   Source source_ = Source::enumeration;
 };

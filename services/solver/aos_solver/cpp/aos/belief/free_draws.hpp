@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 
 namespace aos {
@@ -15,7 +16,7 @@ class FreeDraws {
  public:
   // Chooses a set of draws to make anew. The choice does not depend on the draws' values, so that the way
   // back is as likely. The size of the set is of any scale, so that few draws are tried, too.
-  const std::vector<std::size_t>& choose(std::size_t count, Sampler& random) {
+  const List<std::size_t>& choose(std::size_t count, Sampler& random) {
     if (scores_.size() < count) scores_.resize(count, unknown);
     const double scale = std::exp(-random.uniform() * std::log(static_cast<double>(scores_.size()) + 1));
     chosen_.clear();
@@ -49,8 +50,8 @@ class FreeDraws {
   double doubt(std::size_t draw) const { return 1.02 - scores_[draw]; }
 
   double acceptance_ = 0.5;
-  std::vector<double> scores_;  // in [0, 1]
-  std::vector<std::size_t> chosen_;
+  List<double> scores_;  // in [0, 1]
+  List<std::size_t> chosen_;
 };
 
 }

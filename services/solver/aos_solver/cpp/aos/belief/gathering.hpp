@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aos/base/function_ref.hpp"
+#include "aos/base/list.hpp"
 #include "aos/base/number_index.hpp"
 #include "aos/draws/random.hpp"
 
@@ -14,14 +15,14 @@ struct Particle {
 };
 
 template <class Model>
-double total_weight(const std::vector<Particle<Model>>& particles) {
+double total_weight(const List<Particle<Model>>& particles) {
   double sum = 0;
   for (const auto& particle : particles) sum += particle.weight;
   return sum;
 }
 
 // The number of the element that covers this share of all weights, whose running sums are given.
-inline std::size_t element_at(const std::vector<double>& cumulative, double share) {
+inline std::size_t element_at(const List<double>& cumulative, double share) {
   const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), share * cumulative.back());
   return std::min<std::size_t>(found - cumulative.begin(), cumulative.size() - 1);
 }
@@ -29,7 +30,7 @@ inline std::size_t element_at(const std::vector<double>& cumulative, double shar
 // Calls `visit(state)` for states drawn by their weights, one in each of `count` equal parts of the cumulative weights
 // (stratified sampling). Even distances would agree with a pattern in the order of the states.
 template <class Model>
-void draw_evenly(const std::vector<Particle<Model>>& particles, std::size_t count, Sampler& random,
+void draw_evenly(const List<Particle<Model>>& particles, std::size_t count, Sampler& random,
                  FunctionRef<void(const typename Model::State&)> visit) {
   const double length = total_weight<Model>(particles) / count;
   double below = 0;  // the weight of the particles before `number`
@@ -42,7 +43,7 @@ void draw_evenly(const std::vector<Particle<Model>>& particles, std::size_t coun
 }
 
 // The weight c for which min(weight / c, 1) sums to `count` over all weights. There are more than `count` weights.
-inline double common_weight(std::vector<double> weights, std::size_t count) {
+inline double common_weight(List<double> weights, std::size_t count) {
   std::sort(weights.begin(), weights.end());
   double light = 0;  // the sum of the lightest so far
   std::size_t heavy = weights.size();
@@ -61,7 +62,7 @@ inline double common_weight(std::vector<double> weights, std::size_t count) {
 // Neighbours contend for their places, two at a time (Srinivasan, 2001; Gerber, Chopin and Whiteley, 2019): one of them drops
 // out, or one stays, and the other one goes on with what is left of both. Draws at even distances would agree with a pattern in
 // the order of the states: of pairs of equal weights they would leave all first ones, or all second ones.
-inline double thin_out(std::vector<double>& weights, std::size_t count, Sampler& random) {
+inline double thin_out(List<double>& weights, std::size_t count, Sampler& random) {
   if (weights.size() <= count) return 0;
   const double common = common_weight(weights, count);
   double gone = 0;
@@ -118,16 +119,16 @@ class Gathering {
   }
 
   std::size_t size() const { return particles_.size(); }
-  const std::vector<Particle<Model>>& particles() const { return particles_; }
+  const List<Particle<Model>>& particles() const { return particles_; }
   double total() const { return total_weight<Model>(particles_); }
 
   // Leaves at most `count` states. Returns the weight of those that were dropped.
   double reduce(std::size_t count, Sampler& random) {
     if (particles_.size() <= count) return 0;
-    std::vector<double> weights;
+    List<double> weights;
     for (const auto& particle : particles_) weights.push_back(particle.weight);
     const double gone = thin_out(weights, count, random);
-    std::vector<Particle<Model>> all;
+    List<Particle<Model>> all;
     all.swap(particles_);
     clear();
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -138,7 +139,7 @@ class Gathering {
 
  private:
   NumberIndex numbers_;
-  std::vector<Particle<Model>> particles_;
+  List<Particle<Model>> particles_;
 };
 
 }

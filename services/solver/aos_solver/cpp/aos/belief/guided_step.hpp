@@ -22,6 +22,7 @@
 #pragma once
 
 #include "aos/base/function_ref.hpp"
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
 #include "aos/model/step.hpp"
@@ -69,7 +70,7 @@ class GuidedStep {
   // How many steps were run so far. One that ends within its trial counts again where it is followed.
   std::size_t runs() const { return runs_; }
 
-  using Visit = FunctionRef<void(const State& next, double weight, const std::vector<double>& values)>;
+  using Visit = FunctionRef<void(const State& next, double weight, const List<double>& values)>;
 
   // Calls `visit(next, weight, values)` for steps from a state that agree with the observation. `values` are
   // all draws of a step. Returns the sum of the weights.
@@ -80,7 +81,7 @@ class GuidedStep {
     depth_ = 0;
     is_exhaustive_ = by_chance_ == 0;
     if (by_chance_ > 0) {
-      std::vector<double> drawn;
+      List<double> drawn;
       State next = state;
       replay_.start(values_, random_, &drawn);
       ++runs_;
@@ -104,7 +105,7 @@ class GuidedStep {
           random_(random) {}
 
     // `alternatives` may be null. They stay empty for a continuous draw.
-    void start(std::size_t given, std::vector<Alternative>* alternatives) {
+    void start(std::size_t given, List<Alternative>* alternatives) {
       given_ = given;
       alternatives_ = alternatives;
       order_ = Order::unknown;
@@ -134,7 +135,7 @@ class GuidedStep {
     std::string_view observed_;
     Sampler& random_;
     std::size_t given_ = 0;
-    std::vector<Alternative>* alternatives_ = nullptr;
+    List<Alternative>* alternatives_ = nullptr;
     Order order_ = Order::unknown;
   };
 
@@ -151,7 +152,7 @@ class GuidedStep {
   };
 
   // Runs the step with the draws in `values_`, and with chance for the others.
-  Trial tried(std::vector<Alternative>* alternatives) {
+  Trial tried(List<Alternative>* alternatives) {
     next_ = *start_;
     watch_.start(values_.size(), alternatives);
     replay_.start(values_, random_, nullptr, &watch_);
@@ -180,8 +181,8 @@ class GuidedStep {
   };
 
   // Finds the strata of a continuous draw, each with a random point.
-  void explore(std::vector<Alternative>& strata) {
-    std::vector<Point> points;
+  void explore(List<Alternative>& strata) {
+    List<Point> points;
     add_point(points, explored_tail);
     for (int i = 0; i < explored_points; ++i) add_point(points, (i + 0.5) / explored_points);
     add_point(points, 1 - explored_tail);
@@ -199,11 +200,11 @@ class GuidedStep {
     }
     end_stratum(1);
   }
-  void add_point(std::vector<Point>& points, double value) {
+  void add_point(List<Point>& points, double value) {
     points.push_back({value, Point::kind_of(tried_at(value))});
   }
   // Bisects between two points if one agrees, or if one is before the observed text and the other after it.
-  void bisect(std::vector<Point>& points, Point left, Point right, int depth) {
+  void bisect(List<Point>& points, Point left, Point right, int depth) {
     if (depth == 0 || left.kind == right.kind) return;
     const bool is_between = (left.kind & 3) + (right.kind & 3) == 4 && (left.kind & 3) != 2;
     if (!left.agrees() && !right.agrees() && !is_between) return;
@@ -215,11 +216,11 @@ class GuidedStep {
 
   // The trials of one draw. Their memory serves many steps.
   struct Trials {
-    std::vector<Alternative> alternatives;
-    std::vector<double> promises;
-    std::vector<State> ends;     // of those that ended with the observation, where they are kept
-    std::vector<int> end_of;     // the place of each alternative's end, -1 for none
-    std::vector<double> weights;  // of the ends
+    List<Alternative> alternatives;
+    List<double> promises;
+    List<State> ends;     // of those that ended with the observation, where they are kept
+    List<int> end_of;     // the place of each alternative's end, -1 for none
+    List<double> weights;  // of the ends
   };
 
   // Follows the step from the draws in `values_` on. Returns the sum of the weights.
@@ -241,7 +242,7 @@ class GuidedStep {
     const bool is_discrete = !trials.alternatives.empty();
     if (!is_discrete) explore(trials.alternatives);
     try_all(trials);
-    const std::vector<double>& promises = trials.promises;
+    const List<double>& promises = trials.promises;
     const auto promising = std::count_if(promises.begin(), promises.end(), [](double p) { return p >= doubtful; });
     ++depth_;
     double sum = 0;
@@ -271,7 +272,7 @@ class GuidedStep {
     }
   }
 
-  static double visited(const State& next, double weight, const std::vector<double>& values, Visit visit) {
+  static double visited(const State& next, double weight, const List<double>& values, Visit visit) {
     if (weight > 0) visit(next, weight, values);
     return weight;
   }
@@ -293,7 +294,7 @@ class GuidedStep {
 
   // Follows one promising alternative, or now and then one of the others.
   double follow_one(const Trials& trials, double weight, int branches, Visit visit) {
-    const std::vector<double>& promises = trials.promises;
+    const List<double>& promises = trials.promises;
     const auto is_promising = [](double promise) { return promise >= doubtful; };
     const bool is_mixed = std::any_of(promises.begin(), promises.end(), is_promising) &&
                           std::any_of(promises.begin(), promises.end(), [](double p) { return p > 0 && p < doubtful; });
@@ -305,9 +306,9 @@ class GuidedStep {
     return follow_drawn(trials, others_, weight / (1 - misled), visit, branches);
   }
 
-  double follow_drawn(const Trials& trials, const std::vector<double>& promises, double weight, Visit visit,
+  double follow_drawn(const Trials& trials, const List<double>& promises, double weight, Visit visit,
                       int branches = 1) {
-    const std::vector<Alternative>& alternatives = trials.alternatives;
+    const List<Alternative>& alternatives = trials.alternatives;
     shares_.clear();
     double total = 0;
     for (std::size_t i = 0; i < alternatives.size(); ++i) {
@@ -341,12 +342,12 @@ class GuidedStep {
   Replay replay_;
   const State* start_ = nullptr;
   State next_{};
-  std::vector<double> values_;
-  std::vector<double> rest_;
-  std::vector<std::unique_ptr<Trials>> trials_;  // of the draws that are followed now
+  List<double> values_;
+  List<double> rest_;
+  List<std::unique_ptr<Trials>> trials_;  // of the draws that are followed now
   std::size_t depth_ = 0;
-  std::vector<double> others_;
-  std::vector<double> shares_;
+  List<double> others_;
+  List<double> shares_;
   std::string text_;
   std::size_t by_chance_ = 0;
   std::size_t runs_ = 0;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "aos/base/add_up.hpp"
+#include "aos/base/list.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"
@@ -21,7 +22,7 @@ inline constexpr std::size_t max_history = 400;
 // The draws of one block: the values of the first ones, and the seed of the others. For a guided step, `likelihood` is
 // the estimated likelihood of the observation. For any other step it is the density of the observed numbers, or 1.
 struct Block {
-  std::vector<double> values;
+  List<double> values;
   std::uint64_t seed = 0;
   double likelihood = 1;
   std::uint32_t draws = 0;
@@ -51,8 +52,8 @@ inline TraceLink longer(TraceLink before, Block block) {
   return std::make_shared<Trace>(Trace{std::move(before), origin, std::move(block)});
 }
 // The blocks of a trace, from the origin on.
-inline std::vector<const Block*> blocks_of(const TraceLink& trace) {
-  std::vector<const Block*> blocks;
+inline List<const Block*> blocks_of(const TraceLink& trace) {
+  List<const Block*> blocks;
   for (const Trace* block = trace.get(); block != nullptr; block = block->before.get()) blocks.push_back(&block->block);
   std::reverse(blocks.begin(), blocks.end());
   return blocks;
@@ -95,7 +96,7 @@ class History {
 
   // A history begins with the documents' initial belief, or with these states.
   History() = default;
-  explicit History(const std::vector<Particle<Model>>& particles) {
+  explicit History(const List<Particle<Model>>& particles) {
     auto origins = std::make_shared<Origins>();
     for (const auto& [state, weight] : particles) {
       origins->states.push_back(state);
@@ -106,11 +107,11 @@ class History {
 
   // The states that a history begins with, and the sums of their weights.
   struct Origins {
-    std::vector<State> states;
-    std::vector<double> cumulative;
+    List<State> states;
+    List<double> cumulative;
 
-    std::vector<Particle<Model>> particles() const {
-      std::vector<Particle<Model>> particles;
+    List<Particle<Model>> particles() const {
+      List<Particle<Model>> particles;
       for (std::size_t i = 0; i < states.size(); ++i) {
         particles.push_back({states[i], cumulative[i] - (i > 0 ? cumulative[i - 1] : 0)});
       }
@@ -125,12 +126,12 @@ class History {
     unsigned pause = 0;        // updates between moves
   };
   const Rest& rest() const { return rest_; }
-  History(std::vector<HistoryStep> steps, Rest rest) : steps_(std::move(steps)), rest_(std::move(rest)) {}
+  History(List<HistoryStep> steps, Rest rest) : steps_(std::move(steps)), rest_(std::move(rest)) {}
 
   bool begins_with_the_documents() const { return rest_.origins == nullptr; }
   // A number in [0, 1) for which `originate` gives the state with this number.
   double origin_value(std::size_t number, Sampler& random) const {
-    const std::vector<double>& cumulative = rest_.origins->cumulative;
+    const List<double>& cumulative = rest_.origins->cumulative;
     const double below = number > 0 ? cumulative[number - 1] : 0;
     return (below + random.uniform() * (cumulative[number] - below)) / cumulative.back();
   }
@@ -138,7 +139,7 @@ class History {
   // no lack then.
   bool has_all_origins() const { return rest_.has_all_origins; }
   void note_all_origins() { rest_.has_all_origins = true; }
-  const std::vector<HistoryStep>& steps() const { return steps_; }
+  const List<HistoryStep>& steps() const { return steps_; }
   void add(const HistoryStep& step) { steps_.push_back(step); }
 
   // Whether it is time to move particles of few origins. Moves that do not help are tried less and less often.
@@ -154,7 +155,7 @@ class History {
   }
 
  private:
-  std::vector<HistoryStep> steps_;
+  List<HistoryStep> steps_;
   Rest rest_;
 };
 
@@ -180,8 +181,8 @@ template <class Model>
 struct Cloud {
   using State = typename Model::State;
 
-  std::vector<Particle<Model>> particles;
-  std::vector<Lineage> lineages;
+  List<Particle<Model>> particles;
+  List<Lineage> lineages;
   History<Model> history;
 
   bool has_traces() const { return !lineages.empty() && lineages.front().trace != nullptr; }
@@ -196,7 +197,7 @@ struct Cloud {
   }
   // How many independent samples the weights of the particles' origins are worth.
   double effective_origins() const {
-    std::vector<std::pair<const Trace*, double>> weights;
+    List<std::pair<const Trace*, double>> weights;
     for (std::size_t i = 0; i < particles.size(); ++i) {
       weights.emplace_back(lineages[i].trace->origin, particles[i].weight);
     }
@@ -244,7 +245,7 @@ class GatheredCloud {
 
   // The particles, of which the lightest are thinned out.
   Cloud<Model> thinned(std::size_t max_particles, History<Model> history, Sampler& random) const {
-    std::vector<double> weights;
+    List<double> weights;
     for (const auto& particle : states_.particles()) weights.push_back(particle.weight);
     thin_out(weights, max_particles, random);
     Cloud<Model> cloud{{}, {}, std::move(history)};
@@ -267,7 +268,7 @@ class GatheredCloud {
 
  private:
   Gathering<Model> states_;
-  std::vector<Lineage> lineages_;
+  List<Lineage> lineages_;
 };
 
 }

@@ -11,6 +11,7 @@
 
 #include <set>
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/belief_digest.hpp"
@@ -174,8 +175,8 @@ class Hypotheses {
   }
 
   // The beliefs, the cautious one last, and all the rest as words, for `of`.
-  std::vector<const Belief<Model>*> beliefs() const {
-    std::vector<const Belief<Model>*> beliefs;
+  List<const Belief<Model>*> beliefs() const {
+    List<const Belief<Model>*> beliefs;
     for (const Hypothesis& each : all_) beliefs.push_back(&each.belief);
     if (cautious_) beliefs.push_back(&*cautious_);
     return beliefs;
@@ -197,7 +198,7 @@ class Hypotheses {
   }
   // Takes over what `beliefs` and `words` gave, in a model that may have other skills. There is at least one belief.
   // Without words the first one is the belief.
-  static Hypotheses of(std::vector<Belief<Model>> beliefs, const Words& words) {
+  static Hypotheses of(List<Belief<Model>> beliefs, const Words& words) {
     if (words.empty()) return Hypotheses{std::move(beliefs.front())};
     Hypotheses taken;
     detail::WordReader reader{words};
@@ -290,7 +291,7 @@ class Hypotheses {
   // Closes a row: hypotheses that differ in its cause alone become one.
   void close(std::ptrdiff_t row) {
     open_.erase(open_.begin() + row);
-    std::vector<Hypothesis> merged;
+    List<Hypothesis> merged;
     for (Hypothesis& each : all_) {
       each.ran.erase(each.ran.begin() + row);
       const auto same = std::ranges::find(merged, each.ran, &Hypothesis::ran);
@@ -337,8 +338,8 @@ class Hypotheses {
     return -1;
   }
 
-  std::vector<Hypothesis> all_;
-  std::vector<int> open_;  // the skills whose rows of unobserved ends are open, the oldest first
+  List<Hypothesis> all_;
+  List<int> open_;  // the skills whose rows of unobserved ends are open, the oldest first
   std::optional<Belief<Model>> mixture_;
   std::optional<Belief<Model>> cautious_;
   // Of all observations since the cautious belief began: log P under it - log P under the belief. It goes on while the

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "aos/base/list.hpp"
 #include "aos/draws/loop_heads.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
@@ -16,7 +17,7 @@ template <class Model>
 double estimated_initial_paths(Sampler& random) {
   struct Alternatives final : DrawWatcher, LoopHeads {
     double product = 1;
-    std::vector<double> before_loops;  // the product where each loop began
+    List<double> before_loops;  // the product where each loop began
     void before_draw(std::size_t, const double* weights, int count, double) override {
       const auto positive = std::count_if(weights, weights + count, [](double weight) { return weight > 0; });
       product *= weights == nullptr ? std::numeric_limits<double>::infinity() : static_cast<double>(positive);
@@ -31,8 +32,8 @@ double estimated_initial_paths(Sampler& random) {
     }
     [[noreturn]] void cut() override { throw CutPath{}; }
   };
-  std::vector<double> estimates;
-  const std::vector<double> none;
+  List<double> estimates;
+  const List<double> none;
   Replay replay;
   typename Model::State state{};
   for (int i = 0; i < 11; ++i) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "aos/base/descriptor_file.hpp"
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/hypotheses.hpp"
@@ -46,11 +47,11 @@ class KeptBeliefs {
     file_.seek(begin());
     file_.read(&head, sizeof head);
     if (!file_.is_good() || head.change != change || head.beliefs == 0) return std::nullopt;
-    const std::vector<TraceLink> traces = traces_.restore(head.traces);
+    const List<TraceLink> traces = traces_.restore(head.traces);
     if (traces.size() != head.traces.blocks) return std::nullopt;
     file_.seek(begin() + static_cast<off_t>(sizeof head));
     const Words words = next_words(head.words);
-    std::vector<Belief<Model>> beliefs;
+    List<Belief<Model>> beliefs;
     while (file_.is_good() && beliefs.size() < head.beliefs) beliefs.push_back(next_belief(traces));
     if (!file_.is_good()) return std::nullopt;
     return Hypotheses<Model>::of(std::move(beliefs), words);
@@ -120,7 +121,7 @@ class KeptBeliefs {
       put_state(rest.origins->states[i], rest.origins->cumulative[i]);
     }
   }
-  Belief<Model> next_belief(const std::vector<TraceLink>& traces) {
+  Belief<Model> next_belief(const List<TraceLink>& traces) {
     BeliefHead head{};
     file_.read(&head, sizeof head);
     Cloud<Model> cloud;
@@ -141,7 +142,7 @@ class KeptBeliefs {
   History<Model> next_history(const BeliefHead& head) {
     const Words words = next_words(head.step_words);
     detail::WordReader reader{words};
-    std::vector<HistoryStep> steps;
+    List<HistoryStep> steps;
     for (std::uint64_t left = head.steps; left > 0 && reader.left() > 0; --left) {
       auto [step, text] = detail::next_step(reader);
       if (!text.empty()) step.observation = text_observation(text);

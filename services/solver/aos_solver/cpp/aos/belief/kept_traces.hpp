@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "aos/base/descriptor_file.hpp"
+#include "aos/base/list.hpp"
 #include "aos/belief/history.hpp"
 
 namespace aos {
@@ -54,13 +55,13 @@ class KeptTraces {
 
   // The traces that an earlier process kept, by the numbers of their last blocks, and goes on where it was. Fewer where the
   // file cannot be read.
-  std::vector<TraceLink> restore(const Extent& extent) {
+  List<TraceLink> restore(const Extent& extent) {
     extent_ = extent;
     needed_ = extent.blocks;
-    std::vector<char> bytes(extent.bytes <= static_cast<std::uint64_t>(area_bytes_) ? extent.bytes : 0);
+    List<char> bytes(extent.bytes <= static_cast<std::uint64_t>(area_bytes_) ? extent.bytes : 0);
     file_.seek(place());
     file_.read(bytes.data(), bytes.size());
-    std::vector<TraceLink> all;
+    List<TraceLink> all;
     std::size_t next = 0;
     const auto take = [&](void* to, std::size_t count) {
       if (count > bytes.size() - next) return false;
@@ -71,7 +72,7 @@ class KeptTraces {
     for (std::uint64_t number = 0; file_.is_good() && number < extent.blocks; ++number) {
       Head head{};
       if (!take(&head, sizeof head) || head.before > number || head.values > (bytes.size() - next) / sizeof(double)) break;
-      Block block{std::vector<double>(head.values), head.seed, head.likelihood, head.draws};
+      Block block{List<double>(head.values), head.seed, head.likelihood, head.draws};
       if (head.values > 0) take(block.values.data(), head.values * sizeof(double));
       all.push_back(head.before == 0 ? begun_trace(std::move(block)) : longer(all[head.before - 1], std::move(block)));
       all.back()->kept = {extent.area, number};
@@ -106,7 +107,7 @@ class KeptTraces {
   Extent extent_;
   std::uint64_t needed_ = 0;  // the blocks that were needed when the area was begun
   bool is_new_ = false;
-  std::vector<const Trace*> unkept_;
+  List<const Trace*> unkept_;
 };
 
 }

@@ -4,6 +4,7 @@
 
 #include <unordered_map>
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
 #include "aos/base/stable_order.hpp"
@@ -24,9 +25,9 @@ class Marginals {
   using State = typename Model::State;
 
   // The particles must outlive this object.
-  explicit Marginals(const std::vector<Particle<Model>>& particles) : particles_(particles) {
+  explicit Marginals(const List<Particle<Model>>& particles) : particles_(particles) {
     if (particles.empty()) return;
-    const std::vector<std::byte> differences = differing_bits();
+    const List<std::byte> differences = differing_bits();
     const StateLeaves leaves{particles.front().state};
     if (leaves.hold_all_of(differences)) add_by_place(leaves.all, differences);
     else add_by_visit();
@@ -62,8 +63,8 @@ class Marginals {
   struct Variable {
     std::string name;
     Leaf::Kind kind;
-    std::vector<Value> values;
-    std::vector<std::string> texts;  // of the reported values
+    List<Value> values;
+    List<std::string> texts;  // of the reported values
     NumberIndex places;
 
     void add(const Value& added) {
@@ -84,19 +85,19 @@ class Marginals {
     }
 
     // Whether no byte differs outside of the leaves. Then all states have the same shape.
-    bool hold_all_of(const std::vector<std::byte>& differences) const {
-      std::vector<std::byte> outside = differences;
+    bool hold_all_of(const List<std::byte>& differences) const {
+      List<std::byte> outside = differences;
       for (const Leaf& leaf : all) std::memset(outside.data() + offset(leaf), 0, leaf.size);
       return std::all_of(outside.begin(), outside.end(), [](std::byte byte) { return byte == std::byte{0}; });
     }
 
     const std::byte* state;
-    std::vector<Leaf> all;
+    List<Leaf> all;
   };
 
   // The bits in which any state differs from the first one.
-  std::vector<std::byte> differing_bits() const {
-    std::vector<std::byte> differences(Model::state_bytes());
+  List<std::byte> differing_bits() const {
+    List<std::byte> differences(Model::state_bytes());
     const std::byte* const first = Model::bytes_of(particles_.front().state);
     for (const auto& particle : particles_) {
       const std::byte* const other = Model::bytes_of(particle.state);
@@ -106,11 +107,11 @@ class Marginals {
   }
 
   // In states of one shape, a leaf has one place. Most leaves have the same value in all states.
-  void add_by_place(const std::vector<Leaf>& leaves, const std::vector<std::byte>& differences) {
+  void add_by_place(const List<Leaf>& leaves, const List<std::byte>& differences) {
     const std::byte* const first = Model::bytes_of(particles_.front().state);
     const double total = total_weight<Model>(particles_);
     variables_of(0, particles_.front().state);
-    std::vector<std::size_t> varied;
+    List<std::size_t> varied;
     for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
       const auto* const bits = differences.data() + (static_cast<const std::byte*>(leaves[leaf].place) - first);
       if (std::any_of(bits, bits + leaves[leaf].size, [](std::byte byte) { return byte != std::byte{0}; })) {
@@ -134,14 +135,14 @@ class Marginals {
     for (std::size_t number = 0; number < particles_.size(); ++number) {
       leaves.clear();
       Model::visit_values(particles_[number].state, leaves);
-      const std::vector<std::size_t>& variables = variables_of(leaves.shape, particles_[number].state);
+      const List<std::size_t>& variables = variables_of(leaves.shape, particles_[number].state);
       for (std::size_t leaf = 0; leaf < variables.size(); ++leaf) {
         variables_[variables[leaf]].add({leaves.numbers[leaf], particles_[number].weight, number, leaf});
       }
     }
   }
 
-  const std::vector<std::size_t>& variables_of(std::uint64_t shape, const State& state) {
+  const List<std::size_t>& variables_of(std::uint64_t shape, const State& state) {
     const auto [entry, is_new] = shapes_.try_emplace(shape);
     if (is_new) {
       NamedLeaves leaves{[&](const std::string& name, const Leaf& leaf) {
@@ -168,7 +169,7 @@ class Marginals {
     const bool is_real = variable.kind == Leaf::Kind::real;
     if (!is_real && variable.kind != Leaf::Kind::signed_number && variable.kind != Leaf::Kind::unsigned_number) return;
     if (variable.values.size() <= (is_real ? max_reals_told_apart : variable.texts.size())) return;
-    std::vector<std::pair<double, double>> weighted;
+    List<std::pair<double, double>> weighted;
     double total = 0;
     for (const Value& value : variable.values) {
       weighted.emplace_back(number_of(variable.kind, value.number), value.weight);
@@ -198,7 +199,7 @@ class Marginals {
       std::size_t particle, leaf;
       std::string* text;
     };
-    std::vector<Wanted> wanted;
+    List<Wanted> wanted;
     for (Variable& variable : variables_) {
       for (std::size_t i = 0; i < variable.texts.size(); ++i) {
         wanted.push_back({variable.values[i].particle, variable.values[i].leaf, &variable.texts[i]});
@@ -214,10 +215,10 @@ class Marginals {
     }
   }
 
-  const std::vector<Particle<Model>>& particles_;
-  std::vector<Variable> variables_;
+  const List<Particle<Model>>& particles_;
+  List<Variable> variables_;
   std::unordered_map<std::string, std::size_t> names_;
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> shapes_;
+  std::unordered_map<std::uint64_t, List<std::size_t>> shapes_;
 };
 
 }

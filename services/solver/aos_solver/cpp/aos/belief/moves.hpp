@@ -13,6 +13,7 @@
 // The states that a copy has passed are kept (passage.hpp). The limits of `moved` count the steps of a proposal that repeats all.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/free_draws.hpp"
 #include "aos/belief/guided_step.hpp"
 #include "aos/belief/history.hpp"
@@ -87,7 +88,7 @@ class Moves {
   // Makes copies in proportion to the weights. Each particle has at least one unless there are too many particles.
   void copy(const Cloud<Model>& cloud, std::size_t copies) {
     const double unit = cloud.total() / copies;
-    std::vector<double> weights;
+    List<double> weights;
     for (const auto& particle : cloud.particles) weights.push_back(particle.weight);
     thin_out(weights, copies, random_);
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -106,7 +107,7 @@ class Moves {
     for (std::size_t i = 0; i < copies_.size(); ++i) {
       if (are_kept_ && copies_[i].is_moved) copies_[i].trace = passages_[i].trace(copies_[i].trace);
     }
-    std::vector<double> unmoved(cloud.particles.size(), 0);
+    List<double> unmoved(cloud.particles.size(), 0);
     for (const Copy& copy : copies_) unmoved[copy.particle] += copy.is_moved ? 0 : copy.weight;
     GatheredCloud<Model> gathered;
     for (std::size_t i = 0; i < unmoved.size(); ++i) {
@@ -167,7 +168,7 @@ class Moves {
   bool refresh(Copy& copy, Passage<Model>& passage) {
     const Block& origin = passage.block(0);
     if (origin.draws == 0) return false;
-    const std::vector<std::size_t>& anew = free_draws_.choose(origin.draws, random_);
+    const List<std::size_t>& anew = free_draws_.choose(origin.draws, random_);
     list_values(origin, values_);
     for (const std::size_t draw : anew) {
       if (draw < values_.size()) values_[draw] = random_.uniform();
@@ -223,7 +224,7 @@ class Moves {
     passage.note(place, state, {likelihood, weights_drawn_from_.digest()});
   }
 
-  static void list_values(const Block& block, std::vector<double>& values) {
+  static void list_values(const Block& block, List<double>& values) {
     values.assign(block.values.begin(), block.values.begin() + std::min<std::ptrdiff_t>(std::ssize(block.values), block.draws));
     for (Sampler later{block.seed}; values.size() < block.draws;) values.push_back(later.uniform());
   }
@@ -257,8 +258,8 @@ class Moves {
     Sampler later{block.seed};
     return run(place, block.values, later, state, nullptr, watcher);
   }
-  double run(std::size_t place, const std::vector<double>& values, Sampler& later, State& state,
-           std::vector<double>* record, DrawWatcher* watcher = nullptr) {
+  double run(std::size_t place, const List<double>& values, Sampler& later, State& state,
+           List<double>* record, DrawWatcher* watcher = nullptr) {
     ++steps_;
     if (place == 0) {
       replay_.start(values, later, record);
@@ -285,7 +286,7 @@ class Moves {
   }
 
   // Draws a few values in a row anew, or turns them by a little. Both are as likely on the way back.
-  void perturb(std::vector<double>& values, std::size_t first) {
+  void perturb(List<double>& values, std::size_t first) {
     const std::size_t length = random_.flag(0.5) ? 1 : random_.flag(0.05) ? values.size() : 2 + random_.below(3);
     const bool is_turned = random_.flag(0.3);
     const double reach = is_turned ? std::exp(std::log(0.5) - random_.uniform() * std::log(500.0)) : 0;
@@ -310,7 +311,7 @@ class Moves {
     const State before = state;
     double sum = 0;
     Block chosen;
-    steps.from(before, [&](const State& next, double weight, const std::vector<double>& values) {
+    steps.from(before, [&](const State& next, double weight, const List<double>& values) {
       sum += weight;
       if (!random_.flag(weight / sum)) return;
       state = next;
@@ -357,15 +358,15 @@ class Moves {
   Replay replay_;
   Weights weights_drawn_from_;
   FreeDraws free_draws_;
-  std::vector<std::unique_ptr<GuidedStep<Model>>> guided_steps_;  // of the history's steps, from 1
-  std::vector<Copy> copies_;
-  std::vector<Passage<Model>> passages_;  // of the copies, or of one
+  List<std::unique_ptr<GuidedStep<Model>>> guided_steps_;  // of the history's steps, from 1
+  List<Copy> copies_;
+  List<Passage<Model>> passages_;  // of the copies, or of one
   bool are_kept_ = false;
-  std::vector<State> states_;  // after the blocks of a proposal
-  std::vector<double> likelihoods_;
-  std::vector<double> values_;
-  std::vector<double> used_;     // by the block that is changed
-  std::vector<Block> proposed_;  // from that block on
+  List<State> states_;  // after the blocks of a proposal
+  List<double> likelihoods_;
+  List<double> values_;
+  List<double> used_;     // by the block that is changed
+  List<Block> proposed_;  // from that block on
   std::size_t work_ = 0;
   std::size_t steps_ = 0;
 };

@@ -1,6 +1,7 @@
 // The outcomes of an action from weighted states, if steps can be enumerated.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/model/step.hpp"
@@ -11,7 +12,7 @@ namespace aos {
 // of the others. `numbers` takes the numbers that steps report. Throws NotEnumerable if a step cannot be
 // enumerated, or if there are more than `max_paths` paths, which the states so far often tell.
 template <class Model, class Visit>
-double enumerate_outcomes(const std::vector<Particle<Model>>& particles, int action, NumberSink& numbers,
+double enumerate_outcomes(const List<Particle<Model>>& particles, int action, NumberSink& numbers,
                           std::size_t max_paths, Visit&& visit) {
   constexpr std::size_t telling = 64;
   Enumerator draws;

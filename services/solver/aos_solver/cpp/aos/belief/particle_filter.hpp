@@ -7,6 +7,7 @@
 // or if they descend from too few origins.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/guided_step.hpp"
@@ -65,7 +66,7 @@ class ParticleFilter {
   }
 
   // Begins a history with particles. Their weights are known exactly, or are worth one sample each.
-  Cloud<Model> begun(const std::vector<Particle<Model>>& particles, bool exact) {
+  Cloud<Model> begun(const List<Particle<Model>>& particles, bool exact) {
     Cloud<Model> cloud{particles, {}, History<Model>{particles}};
     for (std::size_t i = 0; i < particles.size(); ++i) {
       Block block{{cloud.history.origin_value(i, random_)}, 0, 1, 1};
@@ -97,7 +98,7 @@ class ParticleFilter {
   }
 
   // Calls `visit(observation, weight)` for steps at random; the weights sum to 1.
-  void draw_observations(const std::vector<Particle<Model>>& particles, int action, auto&& visit) {
+  void draw_observations(const List<Particle<Model>>& particles, int action, auto&& visit) {
     draw_evenly<Model>(particles, particle_count, random_, [&](const State& drawn) {
       State next = drawn;
       visit(Model::step(next, action, random_).observation, 1.0 / particle_count);
@@ -109,7 +110,7 @@ class ParticleFilter {
   struct Plan {
     bool is_guided = false;
     std::size_t by_chance = 0;
-    std::vector<double> trials;
+    List<double> trials;
   };
 
   // Notes how many outcomes each draw has, 0 for a continuous one, and whether a text is begun.
@@ -138,7 +139,7 @@ class ParticleFilter {
       int outcomes;
       bool is_text_begun;
     };
-    std::vector<Draw> draws_;
+    List<Draw> draws_;
   };
 
   Block free_block() {
@@ -172,7 +173,7 @@ class ParticleFilter {
   Plan plan_of(const Cloud<Model>& before, const HistoryStep& step) {
     if (!step.is_observed) return {false, 0, by_weight(before, wanted(before))};
     Look look;
-    std::vector<std::size_t> first_guided;
+    List<std::size_t> first_guided;
     std::size_t agreed = 0;
     bool has_guided = false;
     draw_evenly<Model>(before.particles, pilot_count, random_, [&](const State& drawn) {
@@ -197,8 +198,8 @@ class ParticleFilter {
   }
 
   // Trials in proportion to the weights, at least one for each particle.
-  static std::vector<double> by_weight(const Cloud<Model>& before, double all) {
-    std::vector<double> trials;
+  static List<double> by_weight(const Cloud<Model>& before, double all) {
+    List<double> trials;
     const double total = before.total();
     for (const auto& particle : before.particles) trials.push_back(std::max(1.0, all * particle.weight / total));
     return trials;
@@ -207,10 +208,10 @@ class ParticleFilter {
   // Trials in proportion to the weights and to a rough estimate of the observation's likelihood from each
   // particle (as the auxiliary particle filter: Pitt and Shephard, 1999). A few trials follow the weights
   // alone. If there are many particles, one trial for each tells more.
-  std::vector<double> by_promise(const Cloud<Model>& before, const HistoryStep& step, std::size_t by_chance) {
+  List<double> by_promise(const Cloud<Model>& before, const HistoryStep& step, std::size_t by_chance) {
     GuidedStep<Model> guided{step.action, step.observation, numbers_, random_};
     guided.leave_to_chance(by_chance);
-    const auto nothing = [](const State&, double, const std::vector<double>&) {};
+    const auto nothing = [](const State&, double, const List<double>&) {};
     if (before.particles.size() > few_particles) {
       draw_evenly<Model>(before.particles, price_count, random_, [&](const State& drawn) { guided.from(drawn, nothing); });
       const double price = static_cast<double>(guided.runs()) / price_count;
@@ -218,7 +219,7 @@ class ParticleFilter {
       if (are_dear && price * before.particles.size() <= max_covering_runs) return by_weight(before, few_particles);
     }
     const std::size_t guesses = std::clamp<std::size_t>(max_guesses / before.particles.size(), 1, 8);
-    std::vector<double> trials;
+    List<double> trials;
     double sum = 0;
     double guessed = 0;
     for (const auto& particle : before.particles) {
@@ -244,16 +245,16 @@ class ParticleFilter {
 
   // As many trials as the budget allows, in these shares. Each of the particles that make up nearly all of
   // the shares has at least one trial.
-  std::vector<double> priced(const Cloud<Model>& before, std::vector<double> shares, GuidedStep<Model>& guided) {
-    std::vector<Particle<Model>> promising;
+  List<double> priced(const Cloud<Model>& before, List<double> shares, GuidedStep<Model>& guided) {
+    List<Particle<Model>> promising;
     for (std::size_t i = 0; i < shares.size(); ++i) promising.push_back({before.particles[i].state, shares[i]});
     const std::size_t runs_before = guided.runs();
     double outcomes = 1;
     draw_evenly<Model>(promising, price_count, random_, [&](const State& drawn) {
-      guided.from(drawn, [&](const State&, double, const std::vector<double>&) { ++outcomes; });
+      guided.from(drawn, [&](const State&, double, const List<double>&) { ++outcomes; });
     });
     const double price = static_cast<double>(guided.runs() - runs_before) / price_count;
-    std::vector<double> sorted = shares;
+    List<double> sorted = shares;
     std::sort(sorted.begin(), sorted.end());
     std::reverse(sorted.begin(), sorted.end());
     double light = 1 - nearly_all;
@@ -321,7 +322,7 @@ class ParticleFilter {
   void guide(const Parent& parent, GuidedStep<Model>& guided, GatheredCloud<Model>& gathered) {
     for (long trial = 0; trial < parent.trials; ++trial) {
       outcomes_.clear();
-      const double sum = guided.from(parent.state, [&](const State& next, double weight, const std::vector<double>& values) {
+      const double sum = guided.from(parent.state, [&](const State& next, double weight, const List<double>& values) {
         outcomes_.push_back({next, weight, values});
       });
       const bool is_whole = guided.was_exhaustive();
@@ -338,14 +339,14 @@ class ParticleFilter {
   struct Outcome {
     State next;
     double likelihood;
-    std::vector<double> values;
+    List<double> values;
   };
 
   Sampler& random_;
   Sampler chance_{0};
   Replay replay_;
-  const std::vector<double> none_;
-  std::vector<Outcome> outcomes_;
+  const List<double> none_;
+  List<Outcome> outcomes_;
   NumberSink* numbers_ = nullptr;
 };
 

@@ -1,6 +1,7 @@
 // The blocks of a trace with the states after them, as far as these are known.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/history.hpp"
 
 namespace aos {
@@ -64,14 +65,14 @@ class Passage {
   }
 
   // Other blocks from `place` on, and the states after them.
-  void replace(std::size_t place, std::vector<Block>& blocks, const std::vector<State>& states) {
+  void replace(std::size_t place, List<Block>& blocks, const List<State>& states) {
     for (std::size_t i = 0; i < blocks.size(); ++i) set(place + i, std::move(blocks[i]));
     states_.resize(place);
     states_.insert(states_.end(), states.begin(), states.end());
   }
   // Another origin, and the states after it. The later blocks were repeated with these likelihoods, and draw from the same
   // weights as before.
-  void refresh(Block origin, const std::vector<State>& states, const std::vector<double>& likelihoods) {
+  void refresh(Block origin, const List<State>& states, const List<double>& likelihoods) {
     set(0, std::move(origin));
     states_ = states;
     for (std::size_t place = 1; place < places_.size(); ++place) {
@@ -102,8 +103,8 @@ class Passage {
     changed.is_repeated = false;
   }
 
-  std::vector<Place> places_;
-  std::vector<State> states_;
+  List<Place> places_;
+  List<State> states_;
   std::size_t draws_ = 0;
 };
 

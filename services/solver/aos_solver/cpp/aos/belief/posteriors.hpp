@@ -1,6 +1,7 @@
 // What a report makes of several beliefs.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 
@@ -24,7 +25,7 @@ struct Posteriors {
   // observation is impossible.
   using One = std::pair<Belief<Model>, double>;
 
-  std::vector<One> each;
+  List<One> each;
   std::optional<One> cautious;
 
   bool hypotheses_are_empty() const {

@@ -2,6 +2,7 @@
 // others are as the initial belief has them.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"
@@ -12,7 +13,7 @@
 
 namespace aos {
 
-using Members = std::vector<Member>;
+using Members = List<Member>;
 
 // The values of some variables, as StateWriter writes them.
 template <class Model>
@@ -66,8 +67,8 @@ class Projection {
   }
 
   // Exact as long as both beliefs are, and there are not too many states. `error_bound` and `is_drawn` are of `known`.
-  Belief<Model> of(const std::vector<KnownState>& known, double error_bound, bool is_drawn, Sampler& random) const {
-    std::vector<const Group*> groups;
+  Belief<Model> of(const List<KnownState>& known, double error_bound, bool is_drawn, Sampler& random) const {
+    List<const Group*> groups;
     double outcomes = 0;
     for (const KnownState& each : known) {
       groups.push_back(&group_of(with(State{}, each)));
@@ -88,8 +89,8 @@ class Projection {
  private:
   // States without what is known of them anyway, with weights that sum to 1.
   struct Group {
-    std::vector<Particle<Model>> states;
-    std::vector<double> cumulative;
+    List<Particle<Model>> states;
+    List<double> cumulative;
 
     Group() = default;
     explicit Group(const Gathering<Model>& gathering) : states(gathering.particles()) {

@@ -1,6 +1,7 @@
 // The probability that a step violates the mission's constraints.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
@@ -19,7 +20,7 @@ Violations violations_of(const typename Model::State& before, const typename Mod
 
 // The probabilities by constraint. Steps that cannot be enumerated are sampled.
 struct Risks {
-  std::vector<double> probabilities;
+  List<double> probabilities;
   bool is_sampled = false;
 };
 
@@ -30,7 +31,7 @@ template <class Model>
 Risks risks_of(const Belief<Model>& belief, int action, std::size_t max_paths, Sampler& random) {
   using State = typename Model::State;
   const std::size_t count = Model::constraint_count();
-  Risks risks{std::vector<double>(count)};
+  Risks risks{List<double>(count)};
   const auto add = [&](const State& before, const State& next, double weight) {
     const Violations violations = violations_of<Model>(before, next, action);
     for (std::size_t i = 0; i < count; ++i) {
@@ -47,7 +48,7 @@ Risks risks_of(const Belief<Model>& belief, int action, std::size_t max_paths, S
         [&](const State& before, const State& next, Observation, double weight) { add(before, next, weight); });
     for (double& probability : risks.probabilities) probability += left_out;
   } catch (const NotEnumerable&) {
-    risks = {std::vector<double>(count), true};
+    risks = {List<double>(count), true};
     for (int i = 0; i < risk_samples; ++i) {
       const State before = belief.sample(random);
       State next = before;

@@ -4,6 +4,7 @@
 // not, because the documents have changed, the belief is taken over alone, and a new history begins with it.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/draws/observed_numbers.hpp"
@@ -13,7 +14,7 @@
 
 namespace aos {
 
-using Words = std::vector<std::uint64_t>;
+using Words = List<std::uint64_t>;
 
 inline constexpr std::size_t max_history_words = std::size_t{1} << 20;
 
@@ -108,7 +109,7 @@ Words saved_history(const Belief<Model>& belief) {
 
 // The particles, with their lineages and their history if the words fit this model.
 template <class Model>
-Cloud<Model> with_history(std::vector<Particle<Model>> particles, const Words& words) {
+Cloud<Model> with_history(List<Particle<Model>> particles, const Words& words) {
   Cloud<Model> alone{std::move(particles), {}, {}};
   if (words.empty()) return alone;
   detail::WordReader reader{words};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aos/base/fault.hpp"
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/effort.hpp"
 #include "aos/belief/hypotheses.hpp"
@@ -268,7 +269,7 @@ class BeliefCommands {
       return;
     }
     kept_.number_next(command.number<std::uint64_t>("change"));
-    std::vector<Belief<Model>> all = std::exchange(incoming_, {});
+    List<Belief<Model>> all = std::exchange(incoming_, {});
     if (!is_one_of_many) return become(json, Hypotheses{std::move(all.back())});
     if (all.size() != command.number<std::size_t>("beliefs")) throw BadCommand{"some of the beliefs are missing"};
     const auto words = from_base64<std::uint64_t>(command.text("words"));
@@ -329,7 +330,7 @@ class BeliefCommands {
   int impossible_in_a_row_ = 0;
   Hypotheses believed_;
   std::optional<Hypotheses> aside_;
-  std::vector<Belief<Model>> incoming_;
+  List<Belief<Model>> incoming_;
   KeptBeliefs<Model> kept_;
   Planners<Model>& search_;
 };

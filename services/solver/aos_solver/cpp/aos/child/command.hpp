@@ -12,7 +12,8 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
@@ -23,8 +24,8 @@ struct BadCommand {
 
 namespace detail {
 
-inline std::vector<std::string_view> parts_of(std::string_view line, char separator) {
-  std::vector<std::string_view> parts;
+inline List<std::string_view> parts_of(std::string_view line, char separator) {
+  List<std::string_view> parts;
   for (;;) {
     const auto end = line.find(separator);
     parts.push_back(line.substr(0, end));
@@ -64,7 +65,7 @@ class Command {
   Command& operator=(const Command&) = delete;
 
   std::string_view name() const { return name_; }
-  const std::vector<std::string_view>& items() const { return items_; }
+  const List<std::string_view>& items() const { return items_; }
 
   std::optional<std::string_view> optional_text(std::string_view field) const {
     const auto found = std::ranges::find(fields_, field, &Field::name);
@@ -100,8 +101,8 @@ class Command {
 
   std::string line_;
   std::string_view name_;
-  std::vector<Field> fields_;
-  std::vector<std::string_view> items_;
+  List<Field> fields_;
+  List<std::string_view> items_;
 };
 
 }  // namespace aos

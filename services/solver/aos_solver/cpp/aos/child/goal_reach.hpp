@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/draws/random.hpp"
@@ -19,7 +20,7 @@ class GoalReach {
 
   // `seconds` are of processor time, for the list and for the walks.
   GoalReach(const Belief<Model>& belief, double seconds, int horizon, Sampler& random) {
-    std::vector<Particle<Model>> running;
+    List<Particle<Model>> running;
     for (const auto& particle : belief.particles()) {
       if (Model::ending(particle.state) == Ending::running) running.push_back(particle);
     }
@@ -49,7 +50,7 @@ class GoalReach {
     return true;
   }
 
-  void walk(const std::vector<Particle<Model>>& running, double seconds, int horizon, Sampler& random) {
+  void walk(const List<Particle<Model>>& running, double seconds, int horizon, Sampler& random) {
     constexpr std::size_t max_walks = 2000;
     const auto latest = processor_time() + std::chrono::duration<double>{seconds};
     RandomWalk<Model> walk;

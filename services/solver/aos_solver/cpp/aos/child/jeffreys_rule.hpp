@@ -1,6 +1,7 @@
 // A belief in which the probability of a variable's value is another one (Jeffrey's rule).
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/saved_history.hpp"
 #include "aos/model/values.hpp"
@@ -31,7 +32,7 @@ class JeffreysRule {
   // The belief with another probability; none where no state has the value, or each has, and that is not what is wanted.
   std::optional<Belief<Model>> moved_to(double probability) const {
     if (!has_variable_ || (with_ <= 0 && probability > 0) || (without_ <= 0 && probability < 1)) return std::nullopt;
-    std::vector<Particle<Model>> particles;
+    List<Particle<Model>> particles;
     for (std::size_t number = 0; number < has_value_.size(); ++number) {
       const auto& [state, weight] = belief_.particles()[number];
       const double moved = has_value_[number] ? weight / with_ * probability : weight / without_ * (1 - probability);

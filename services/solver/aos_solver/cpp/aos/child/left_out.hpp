@@ -2,6 +2,7 @@
 // values of one initial state, so that states which differ in nothing else are equal.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/values.hpp"
 #include "aos/text/json.hpp"
@@ -14,7 +15,7 @@ class LeftOut {
   using State = typename Model::State;
 
   LeftOut() : stand_in_(some_state()), places_(all_places()) {
-    std::erase_if(places_, [](const Place& place) { return !is_irrelevant(place); });
+    erase_if(places_, [](const Place& place) { return !is_irrelevant(place); });
   }
 
   State rest_of(const State& state) const {
@@ -39,8 +40,8 @@ class LeftOut {
     std::size_t size;
   };
 
-  std::vector<Place> all_places() const {
-    std::vector<Place> places;
+  List<Place> all_places() const {
+    List<Place> places;
     std::string compound;
     NamedLeaves leaves{[&](const std::string& name, const Leaf& leaf) {
       const auto offset = static_cast<std::size_t>(static_cast<const std::byte*>(leaf.place) - Model::bytes_of(stand_in_));
@@ -69,7 +70,7 @@ class LeftOut {
   }
 
   State stand_in_;
-  std::vector<Place> places_;
+  List<Place> places_;
 };
 
 }

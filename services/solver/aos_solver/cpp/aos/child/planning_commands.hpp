@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
+#include "aos/base/list.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/goal_reach.hpp"
@@ -26,7 +27,7 @@ class PlanningCommands {
   // `without`, and the actions whose numbers are `without_actions`, are not there for the whole search.
   void plan(JsonWriter& json, const Command& command) {
     const auto left_out = left_out_by(command);
-    const std::vector<int> left = actions_left(left_out);
+    const List<int> left = actions_left(left_out);
     if (left.empty()) throw BadCommand{"no action is left"};
     if (left_out.empty()) return plan_with(search_, json, command, left);
     const typename Model::Without without{left_out};
@@ -107,10 +108,10 @@ class PlanningCommands {
 
   const Belief<Model>& belief() const { return beliefs_.belief(); }
 
-  static std::vector<int> actions_left(const std::vector<bool>& left_out) {
-    std::vector<int> actions(Model::action_count());
+  static List<int> actions_left(const std::vector<bool>& left_out) {
+    List<int> actions(Model::action_count());
     std::iota(actions.begin(), actions.end(), 0);
-    std::erase_if(actions, [&](int action) { return !left_out.empty() && left_out[action]; });
+    erase_if(actions, [&](int action) { return !left_out.empty() && left_out[action]; });
     return actions;
   }
   // For each action whether it is left out; empty if none is.
@@ -130,7 +131,7 @@ class PlanningCommands {
   }
 
   // Plans with the model's actions as they are now; `numbers` are those that they have in the documents.
-  void plan_with(Planners<Model>& search, JsonWriter& json, const Command& command, const std::vector<int>& numbers) {
+  void plan_with(Planners<Model>& search, JsonWriter& json, const Command& command, const List<int>& numbers) {
     const auto start = std::chrono::steady_clock::now();
     const auto processor_start = processor_time();
     const Belief<Model>& belief = beliefs_.belief_for(command);
@@ -177,7 +178,7 @@ class PlanningCommands {
   static constexpr const char* idle_text = "; nothing is known that is worth more than this action, which changes nothing and tells nothing";
 
   // The actions that the command bars, by their numbers among `numbers`.
-  static BarredActions barred_by(const Command& command, const std::vector<int>& numbers) {
+  static BarredActions barred_by(const Command& command, const List<int>& numbers) {
     BarredActions barred;
     for (const auto item : command.items()) {
       const auto place = std::ranges::find(numbers, detail::number_in<int>(item));
@@ -197,10 +198,10 @@ class PlanningCommands {
   Planners<Model>& search_;
   int planned_horizon_ = 0;
   bool planned_cautiously_ = false;
-  std::vector<int> left_;
+  List<int> left_;
   std::unique_ptr<Planners<Model>> shorter_search_;  // with the actions that are `left_`
   std::optional<Pondered> pondered_;
-  std::vector<std::uint64_t> pondered_simulations_;  // since the last plan
+  List<std::uint64_t> pondered_simulations_;  // since the last plan
   std::optional<Listing<Model>> listing_;
 };
 

@@ -1,6 +1,7 @@
 // The commands by which a belief goes over to an engine of other variables.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/projection.hpp"
 #include "aos/child/command.hpp"
@@ -37,7 +38,7 @@ void save_joint(JsonWriter& json, const Command& command, const Belief<Model>& b
   };
   const Members members = members_named<Model>(command.text("variables"));
   const auto mask = command.number<std::uint64_t>("spendable");
-  std::vector<Row> rows;
+  List<Row> rows;
   std::unordered_map<std::string, std::size_t> places;
   for (const auto& [state, weight] : belief.particles()) {
     Row row{weight, Model::ending(state), Model::spent(state) & mask, text_of<Model>(members, state)};
@@ -61,7 +62,7 @@ void save_joint(JsonWriter& json, const Command& command, const Belief<Model>& b
 template <class Model>
 Belief<Model> load_joint(const Command& command, Sampler& random) {
   const auto& items = command.items();
-  std::vector<KnownState> known;
+  List<KnownState> known;
   for (std::size_t item = 0; item + 3 < items.size(); item += 4) {
     const int ending = detail::number_in<int>(items[item + 1]);
     if (ending < 0 || ending >= ending_count) throw BadCommand{"there is no such ending"};

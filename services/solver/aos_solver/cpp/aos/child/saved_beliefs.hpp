@@ -1,6 +1,7 @@
 // Beliefs as text, for an engine whose model has the same states. Its documents are the same, or changed ones.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/saved_history.hpp"
 #include "aos/model/state_text.hpp"
@@ -39,13 +40,13 @@ void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t firs
 // pairs of a weight and a state.
 template <class Model>
 Belief<Model> load_belief(double error_bound, bool is_drawn, std::string_view history, std::size_t constant_count,
-                          const std::vector<std::string_view>& fields) {
+                          const List<std::string_view>& fields) {
   SavedConstants constants;
   std::size_t next = 0;
   for (; next + 1 < fields.size() && next < 2 * constant_count; next += 2) {
     constants.add_text(fields[next], fields[next + 1]);
   }
-  std::vector<Particle<Model>> particles;
+  List<Particle<Model>> particles;
   for (; next + 1 < fields.size(); next += 2) {
     typename Model::State state{};
     Model::load_state(state, fields[next + 1], constants);

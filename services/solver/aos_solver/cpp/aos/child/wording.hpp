@@ -1,6 +1,7 @@
 // Translates the model's numbers into the words of the documents, and back.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/child/command.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/model/step.hpp"
@@ -57,7 +58,7 @@ inline void write_numbers(JsonWriter& json, const ObservedNumbers& numbers) {
 
 // Reads such numbers from text; all parts are separated by spaces. Throws BadCommand.
 inline ObservedNumbers numbers_from(std::string_view text) {
-  const auto parts = text.empty() ? std::vector<std::string_view>{} : detail::parts_of(text, ' ');
+  const auto parts = text.empty() ? List<std::string_view>{} : detail::parts_of(text, ' ');
   if (parts.size() % 3 != 0) throw BadCommand{"a number is not a name, an index and a value"};
   ObservedNumbers numbers;
   for (std::size_t part = 0; part < parts.size(); part += 3) {

@@ -1,6 +1,7 @@
 // The commands for simulated worlds: one world for missions without a robot, many worlds for a learner.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/risks.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/wording.hpp"
@@ -27,7 +28,7 @@ class WorldCommands {
   // Begins another mission in the world as it is, after `idle` steps of extrinsic changes alone.
   void begin_mission(JsonWriter& json, const Command& command) {
     Replay draws;
-    const std::vector<double> none;
+    const List<double> none;
     draws.start(none, random_);
     Model::begin(hidden_, command.number<int>("idle"), draws);
     json.begin_object().member("ending", ending_text(Model::ending(hidden_)));
@@ -54,7 +55,7 @@ class WorldCommands {
   void show(JsonWriter& json) const { json.begin_object().member("state", Model::state_text(hidden_)).end_object(); }
 
   void reset_many(JsonWriter& json, const Command& command) {
-    std::vector<std::uint64_t> seeds;
+    List<std::uint64_t> seeds;
     for (const auto seed : command.items()) seeds.push_back(detail::number_in<std::uint64_t>(seed));
     worlds_.reset(json, seeds);
   }

@@ -3,6 +3,7 @@
 // their order. Responses of the same name are the same observation. Text responses are reported as texts.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -26,7 +27,7 @@ class Worlds {
   }
 
   // Starts one new world for each seed. Writes the names of the observations, and whether some are texts.
-  void reset(JsonWriter& json, const std::vector<std::uint64_t>& seeds) {
+  void reset(JsonWriter& json, const List<std::uint64_t>& seeds) {
     worlds_.clear();
     for (const std::uint64_t seed : seeds) {
       worlds_.push_back({State{}, Sampler{seed}});
@@ -40,7 +41,7 @@ class Worlds {
 
   // Takes one action for each world; a negative action starts the world anew. The answer's arrays have an entry for
   // each world, in base64; endings are of `Ending`. Observed numbers come as arrays of their worlds, keys and values.
-  void step(JsonWriter& json, const std::vector<std::int32_t>& actions) {
+  void step(JsonWriter& json, const List<std::int32_t>& actions) {
     rewards_.clear();
     observations_.clear();
     endings_.clear();
@@ -94,15 +95,15 @@ class Worlds {
 
   ObservationNumbers<Model> observed_;
   bool has_texts_ = false;
-  std::vector<World> worlds_;
+  List<World> worlds_;
 
-  std::vector<double> rewards_;
-  std::vector<std::int32_t> observations_;
-  std::vector<std::uint8_t> endings_;
-  std::vector<std::string> texts_;
-  std::vector<std::int32_t> number_worlds_;
-  std::vector<NumberKey> number_keys_;
-  std::vector<double> number_values_;
+  List<double> rewards_;
+  List<std::int32_t> observations_;
+  List<std::uint8_t> endings_;
+  List<std::string> texts_;
+  List<std::int32_t> number_worlds_;
+  List<NumberKey> number_keys_;
+  List<double> number_values_;
 };
 
 }

@@ -4,7 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
@@ -33,7 +34,7 @@ class AliasColumns {
   };
 
   // Appends one column for each outcome. `total` is the sum of the outcomes' weights.
-  void append(const std::vector<Weighted>& outcomes, double total, std::vector<AliasColumn<Outcome>>& columns) {
+  void append(const List<Weighted>& outcomes, double total, List<AliasColumn<Outcome>>& columns) {
     const std::size_t first = columns.size();
     light_.clear();
     heavy_.clear();
@@ -60,9 +61,9 @@ class AliasColumns {
   }
 
  private:
-  std::vector<std::size_t> light_;
-  std::vector<std::size_t> heavy_;
-  std::vector<double> shares_;  // how many columns an outcome still has to fill
+  List<std::size_t> light_;
+  List<std::size_t> heavy_;
+  List<double> shares_;  // how many columns an outcome still has to fill
 };
 
 }

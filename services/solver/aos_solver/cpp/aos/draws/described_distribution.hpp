@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "aos/base/list.hpp"
 #include "aos/draws/normal.hpp"
 #include "aos/draws/random.hpp"
 
@@ -15,7 +16,7 @@ struct DescribedDistribution {
   Kind kind = Kind::normal;
   // Normal: mean and deviation. Uniform: lower and upper bound. Discrete: the first value, then the
   // probabilities of this value and of those that follow in steps of 1.
-  std::vector<double> numbers{};
+  List<double> numbers{};
 
   bool operator==(const DescribedDistribution&) const = default;
 
@@ -59,7 +60,7 @@ struct DescribedDistribution {
 
   // Appends values that part the draws into pieces. A piece is half a deviation of a normal distribution, an
   // eighth of a uniform one, or one value of a discrete one.
-  void add_edges(std::vector<double>& edges) const {
+  void add_edges(List<double>& edges) const {
     constexpr int parts = 4;
     switch (kind) {
       case Kind::normal:

@@ -10,7 +10,8 @@
 #include <initializer_list>
 #include <iterator>
 #include <utility>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
@@ -81,7 +82,7 @@ class Discrete : public Distribution {
   Discrete& operator=(const Discrete&) = delete;
 
  private:
-  std::vector<double> copied_;  // weights that are no array of double
+  List<double> copied_;  // weights that are no array of double
 };
 
 }

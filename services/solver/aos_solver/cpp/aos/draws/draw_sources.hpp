@@ -2,6 +2,7 @@
 // includes this file.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/directed.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/loop_elimination.hpp"
@@ -257,7 +258,7 @@ void Enumerator::leave_endless(std::uint32_t loop) const {
 void Enumerator::cut() {
   has_number_between_ = has_number_between_ || has_number_since_;
   if (is_listing_) {
-    std::vector<int> choices;
+    List<int> choices;
     for (std::size_t draw = 0; draw < depth_; ++draw) choices.push_back(choices_[draw].taken);
     const LoopChain::Number head = chain_.find_or_add(key_, from_, std::move(choices), events_);
     chain_.add_edge(head, probability_);

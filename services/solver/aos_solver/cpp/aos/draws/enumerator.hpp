@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "aos/base/function_ref.hpp"
+#include "aos/base/list.hpp"
 #include "aos/draws/directed.hpp"
 #include "aos/draws/loop_chain.hpp"
 #include "aos/draws/loop_heads.hpp"
@@ -142,15 +143,15 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   bool meets_number_ = false;
   bool has_drawn_number_ = false;
   Sampler drawn_{0};
-  std::vector<Choice> choices_;  // since the head that is walked from
+  List<Choice> choices_;  // since the head that is walked from
   std::size_t depth_ = 0;
   double probability_ = 1;  // of these
   int paths_left_ = 0;
 
   // The way to that head.
-  std::vector<int> given_;
+  List<int> given_;
   std::size_t given_left_ = 0;
-  std::vector<LoopChain::Stop> stops_;
+  List<LoopChain::Stop> stops_;
   LoopChain::Number from_ = LoopChain::start;
   double visits_ = 1;
 
@@ -173,8 +174,8 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
 
   bool is_best_first_ = false;
   Sampler chance_{0};
-  std::vector<Node> nodes_;
-  std::vector<Begun> begun_;      // a heap, the likeliest on top
+  List<Node> nodes_;
+  List<Begun> begun_;      // a heap, the likeliest on top
   std::size_t shared_ = 0;        // the choices of this path that have nodes, up to `last_`
   std::uint32_t last_ = no_node;
   double waiting_ = 0;

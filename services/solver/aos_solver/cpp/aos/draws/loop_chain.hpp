@@ -12,7 +12,8 @@
 #include <string>
 #include <unordered_map>
 #include <utility>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
@@ -57,7 +58,7 @@ class LoopChain {
     return found->second;
   }
   // The number of the head with this key. A new head is reached from `before` by `choices`.
-  Number find_or_add(const std::string& key, Number before, std::vector<int> choices, std::uint64_t events) {
+  Number find_or_add(const std::string& key, Number before, List<int> choices, std::uint64_t events) {
     const auto [found, is_new] = numbers_.try_emplace(key, static_cast<Number>(heads_.size()));
     met_again_ += !is_new;
     if (is_new) {
@@ -67,7 +68,7 @@ class LoopChain {
     return found->second;
   }
   // Writes the draws on the way to a head, and the heads on it in their order; the last is the head itself.
-  void write_way(Number to, std::vector<int>& draws, std::vector<Stop>& stops) const;
+  void write_way(Number to, List<int>& draws, List<Stop>& stops) const;
 
   // Adds a way from the head that is being listed to another one.
   void add_edge(Number to, double probability) {
@@ -111,13 +112,13 @@ class LoopChain {
   };
   struct Head {
     Number before = start;
-    std::vector<int> choices{};  // since `before`
+    List<int> choices{};  // since `before`
     std::uint64_t events = 0;
     bool is_listed = false;
     bool is_endless = false;
     double mass = 0;  // a lower bound of `visits`, as long as the head is not listed
     double visits = 0;
-    std::vector<Edge> edges{};
+    List<Edge> edges{};
     double ends = 0;
     double lost = 0;
   };
@@ -126,11 +127,11 @@ class LoopChain {
   // Notes the listed heads from which no path comes to an end, nor to a head that is not listed.
   void find_endless();
 
-  std::vector<Head> heads_;
+  List<Head> heads_;
   std::unordered_map<std::string, Number> numbers_;
   std::unordered_map<std::string, std::uint32_t> entries_;
   std::priority_queue<std::pair<double, Number>> likeliest_;
-  std::vector<Edge> listed_;
+  List<Edge> listed_;
   double mass_of_listed_ = 0;
   double waiting_ = 0;
   std::size_t bytes_ = 0;

@@ -7,18 +7,19 @@
 #include <functional>
 
 #include "aos/base/add_up.hpp"
+#include "aos/base/list.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/loop_chain.hpp"
 
 namespace aos {
 
-void LoopChain::write_way(Number to, std::vector<int>& draws, std::vector<Stop>& stops) const {
+void LoopChain::write_way(Number to, List<int>& draws, List<Stop>& stops) const {
   draws.clear();
   stops.clear();
   for (Number head = to; head != start; head = heads_[head].before) stops.push_back({head, 0, heads_[head].events});
   std::reverse(stops.begin(), stops.end());
   for (Stop& stop : stops) {
-    const std::vector<int>& choices = heads_[stop.head].choices;
+    const List<int>& choices = heads_[stop.head].choices;
     draws.insert(draws.end(), choices.begin(), choices.end());
     stop.draws = draws.size();
   }
@@ -35,7 +36,7 @@ void LoopChain::end(Number head, double ends, double lost) {
 
 class LoopChain::Elimination {
  public:
-  explicit Elimination(const std::vector<Head>& heads) : heads_(heads), rows_(heads.size()), sources_(heads.size()) {
+  explicit Elimination(const List<Head>& heads) : heads_(heads), rows_(heads.size()), sources_(heads.size()) {
     for (Number from = 0; from < heads.size(); ++from) {
       if (!heads[from].is_listed) continue;
       Row& row = rows_[from];
@@ -54,7 +55,7 @@ class LoopChain::Elimination {
   }
 
   // How often a run comes to each head.
-  std::vector<double> visits() {
+  List<double> visits() {
     for (Number head = start + 1; head < heads_.size(); ++head) {
       if (rows_[head].is_left) order_.push({degree(head), head});
     }
@@ -63,7 +64,7 @@ class LoopChain::Elimination {
       order_.pop();
       if (rows_[head].is_left && degree_then == degree(head)) eliminate(head);
     }
-    std::vector<double> visits(heads_.size(), 0);
+    List<double> visits(heads_.size(), 0);
     visits[start] = 1;
     for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) {
       for (const auto& [from, share] : step->shares) visits[step->head] += visits[from] * share;
@@ -85,7 +86,7 @@ class LoopChain::Elimination {
   };
   struct Step {
     Number head;
-    std::vector<Share> shares;
+    List<Share> shares;
   };
 
   std::size_t degree(Number head) const { return sources_[head].size() * rows_[head].to.size(); }
@@ -115,25 +116,25 @@ class LoopChain::Elimination {
       if (from != start) order_.push({degree(from), from});
     }
     for (const auto& [to, probability] : row.to) {
-      std::erase_if(sources_[to], [&](Number from) { return from == head; });
+      erase_if(sources_[to], [&](Number from) { return from == head; });
       if (to != start) order_.push({degree(to), to});
     }
     row.to.clear();
     steps_.push_back(std::move(step));
   }
 
-  const std::vector<Head>& heads_;
-  std::vector<Row> rows_;
-  std::vector<std::vector<Number>> sources_;  // the heads with a way to this one
-  std::priority_queue<std::pair<std::size_t, Number>, std::vector<std::pair<std::size_t, Number>>, std::greater<>> order_;
-  std::vector<Step> steps_;
+  const List<Head>& heads_;
+  List<Row> rows_;
+  List<List<Number>> sources_;  // the heads with a way to this one
+  std::priority_queue<std::pair<std::size_t, Number>, List<std::pair<std::size_t, Number>>, std::greater<>> order_;
+  List<Step> steps_;
   std::size_t work_ = 0;
 };
 
 void LoopChain::find_endless() {
-  std::vector<std::vector<Number>> sources(heads_.size());
+  List<List<Number>> sources(heads_.size());
   std::vector<bool> ends(heads_.size(), false);
-  std::vector<Number> found;
+  List<Number> found;
   const auto note = [&](Number head) {
     if (ends[head]) return;
     ends[head] = true;
@@ -154,7 +155,7 @@ void LoopChain::find_endless() {
 
 double LoopChain::settle() {
   find_endless();
-  const std::vector<double> visits = Elimination{heads_}.visits();
+  const List<double> visits = Elimination{heads_}.visits();
   double left_out = 0;
   for (Head& head : heads_) {
     if (!head.is_listed) head.mass = 0;

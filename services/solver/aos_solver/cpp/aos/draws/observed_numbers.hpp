@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "aos/base/list.hpp"
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/random.hpp"
 
@@ -44,11 +45,11 @@ class ObservedNumbers {
   }
 
  private:
-  std::vector<ObservedNumber>::iterator place_of(NumberKey key) {
+  List<ObservedNumber>::iterator place_of(NumberKey key) {
     return std::lower_bound(numbers_.begin(), numbers_.end(), key,
                             [](const ObservedNumber& number, NumberKey sought) { return number.key < sought; });
   }
-  std::vector<ObservedNumber> numbers_;
+  List<ObservedNumber> numbers_;
 };
 
 [[noreturn, gnu::cold]] void reported_twice(NumberKey key);

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
+#include "aos/base/list.hpp"
 #include "aos/draws/loop_heads.hpp"
 #include "aos/draws/normal.hpp"
 #include "aos/draws/xoshiro.hpp"
@@ -155,7 +155,7 @@ class Draws {
       weights = many.data();
     }
     std::array<double, 256> few;
-    std::vector<double> many;
+    List<double> many;
     double* weights = few.data();
     int count = 0;
     int capacity = static_cast<int>(few.size());

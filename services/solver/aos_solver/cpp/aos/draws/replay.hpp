@@ -2,6 +2,7 @@
 // numbers are given, and the later ones are random.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/directed.hpp"
 #include "aos/draws/loop_heads.hpp"
 #include "aos/draws/random.hpp"
@@ -28,7 +29,7 @@ class Replay final : public DirectedDraws {
  public:
   // Begins a path. The arguments must outlive it. The path's numbers are appended to `record`, the watcher is told
   // of its draws, and `heads` of its loops, where these are not null.
-  void start(const std::vector<double>& given, Sampler& random, std::vector<double>* record = nullptr,
+  void start(const List<double>& given, Sampler& random, List<double>* record = nullptr,
              DrawWatcher* watcher = nullptr, LoopHeads* heads = nullptr) {
     given_ = given.data();
     count_ = given.size();
@@ -64,7 +65,7 @@ class Replay final : public DirectedDraws {
   const double* given_ = nullptr;
   std::size_t count_ = 0;
   Sampler* random_ = nullptr;
-  std::vector<double>* record_ = nullptr;
+  List<double>* record_ = nullptr;
   DrawWatcher* watcher_ = nullptr;
   LoopHeads* heads_ = nullptr;
   std::size_t draws_ = 0;

@@ -9,6 +9,7 @@
 // light path before, so that it does not depend on what is drawn now.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/directed.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/random.hpp"
@@ -109,7 +110,7 @@ class SplitDraws final : public DirectedDraws {
   Sampler& random_;
   double start_weight_ = 1;
   double threshold_ = 0;
-  std::vector<Choice> choices_;
+  List<Choice> choices_;
   std::size_t depth_ = 0;
   Way at_{1, 1, true};
   std::size_t last_draws_ = max_draws_of_path;  // the place of the first of them

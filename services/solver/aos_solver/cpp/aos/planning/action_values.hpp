@@ -8,6 +8,7 @@
 
 #include <string>
 
+#include "aos/base/list.hpp"
 #include "aos/planning/budget.hpp"
 
 namespace aos {
@@ -16,7 +17,7 @@ namespace aos {
 // that a mission that follows the tree comes to a leaf, unless it ends before.
 struct TreeReach {
   double gain = 0;
-  std::vector<double> beyond;
+  List<double> beyond;
 };
 
 // What a tree promises of the action that was chosen, and what missions return that are played from its belief, with the
@@ -67,8 +68,8 @@ inline std::string unplayed_text(std::size_t played) {
 }
 
 // The values of actions with bounds; `lowers` and `uppers` are between what the values may be, proven or not.
-inline void set_between(Estimates& estimates, const std::vector<double>& lowers,
-                        const std::vector<double>& uppers, int choice) {
+inline void set_between(Estimates& estimates, const List<double>& lowers,
+                        const List<double>& uppers, int choice) {
   static const double deviation_of_even = 1 / std::sqrt(12.0);
   const std::size_t chosen = choice;
   const double most = (lowers[chosen] + uppers[chosen]) / 2;

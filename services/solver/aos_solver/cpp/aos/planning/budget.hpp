@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <limits>
 #include <set>
-#include <vector>
 
+#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 
 namespace aos {
@@ -61,7 +61,7 @@ struct ActionEstimate {
   double at_least = -std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
 };
-using Estimates = std::vector<ActionEstimate>;  // by action
+using Estimates = List<ActionEstimate>;  // by action
 
 // The action with the highest value of those that count, or, of actions that are as good, the one with the highest immediate
 // reward: what is as good later would else be put off for ever, since the best of many later choices is estimated too high. As

@@ -5,6 +5,7 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/function_ref.hpp"
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -98,7 +99,7 @@ class Planner {
   // How many simulations of earlier searches serve the next one.
   virtual std::uint64_t known_simulations() const { return 0; }
   // The simulations of each thread of the last search; empty where there is one thread.
-  virtual std::vector<std::uint64_t> simulations_by_thread() const { return {}; }
+  virtual List<std::uint64_t> simulations_by_thread() const { return {}; }
 
  protected:
   // Whether an estimate is good enough for a decision, beside that of the most visited action.

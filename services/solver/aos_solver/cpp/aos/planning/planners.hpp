@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -70,7 +71,7 @@ class Planners {
   int choice(const Estimates& estimates, const BarredActions& barred = {}) const {
     return used_->choice(estimates, horizon_, barred);
   }
-  std::vector<std::uint64_t> simulations_by_thread() const { return used_->simulations_by_thread(); }
+  List<std::uint64_t> simulations_by_thread() const { return used_->simulations_by_thread(); }
   std::uint64_t known_simulations() const { return used_->known_simulations(); }
 
   // What a decision tells: an estimate of what is returned over the next `horizon` decisions, beginning with each action,
@@ -111,7 +112,7 @@ class Planners {
   }
 
  private:
-  using List = std::vector<Planner<Model>*>;
+  using Order = List<Planner<Model>*>;
 
   StateSpace<Model> space_;
   MdpValues<Model> values_{space_};
@@ -125,9 +126,9 @@ class Planners {
   SavingsPlanner<Model> savings_{space_, options_, rollouts_, missions_};
   SeekPlanner<Model> seek_{space_, pomcp_};
   Despot<Model> despot_{space_, values_, missions_};
-  const List all_{&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &rollouts_, &seek_, &pomcp_, &despot_};
+  const Order all_{&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &rollouts_, &seek_, &pomcp_, &despot_};
   // Which planners are tried in turn, by what was asked for. The last ones can always decide.
-  const List order_[std::size(planner_names)] = {
+  const Order order_[std::size(planner_names)] = {
       {&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &seek_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}, {&options_, &pomcp_}, {&savings_, &pomcp_}};
   // What is left of a budget in time after so much of it.
   static Budget left_of(Budget budget, std::chrono::nanoseconds spent) {

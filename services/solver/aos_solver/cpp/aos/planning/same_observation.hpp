@@ -1,13 +1,14 @@
 // Elements by the observation that each has, such as the scenarios or states that a group had before a step.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 
 namespace aos {
 
 // Mostly there is only one observation, and the elements are sorted already.
 template <class Element>
-void sort_by_observation(std::vector<Element>& elements, std::size_t first, std::size_t last) {
+void sort_by_observation(List<Element>& elements, std::size_t first, std::size_t last) {
   const auto begin = elements.begin() + first;
   const auto end = elements.begin() + last;
   const auto is_before = [](const Element& left, const Element& right) { return left.observation < right.observation; };
@@ -16,7 +17,7 @@ void sort_by_observation(std::vector<Element>& elements, std::size_t first, std:
 
 // The end of the elements that have the observation of the one at `start`.
 template <class Element>
-std::size_t end_of_history(const std::vector<Element>& elements, std::size_t start, std::size_t last) {
+std::size_t end_of_history(const List<Element>& elements, std::size_t start, std::size_t last) {
   std::size_t end = start + 1;
   while (end < last && elements[end].observation == elements[start].observation) ++end;
   return end;
@@ -24,7 +25,7 @@ std::size_t end_of_history(const std::vector<Element>& elements, std::size_t sta
 
 // Calls `visit(first, last)` for each run of elements with the same observation.
 template <class Element, class Visit>
-void for_each_history(const std::vector<Element>& elements, Visit&& visit) {
+void for_each_history(const List<Element>& elements, Visit&& visit) {
   for (std::size_t first = 0, last = 0; first < elements.size(); first = last) {
     last = end_of_history(elements, first, elements.size());
     visit(first, last);

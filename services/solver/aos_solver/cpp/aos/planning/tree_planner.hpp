@@ -1,6 +1,7 @@
 // What planners have in common that search a tree: what they tell of it, and missions that show what it promises too much.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/action_values.hpp"
@@ -69,7 +70,7 @@ class TreePlanner : public Planner<Model> {
   // Sets the most that each action may return, where the states are listed and have been valued.
   void bound(const Belief<Model>& belief, Estimates& estimates) const {
     if (!listed_.knows(horizon_)) return;
-    const std::vector<double> most = listed_.at_most(listed_.space().weights_of(belief));
+    const List<double> most = listed_.at_most(listed_.space().weights_of(belief));
     for (std::size_t a = 0; a < estimates.size(); ++a) estimates[a].at_most = most[a];
   }
 

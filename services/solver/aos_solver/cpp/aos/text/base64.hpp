@@ -10,7 +10,8 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <vector>
+
+#include "aos/base/list.hpp"
 
 namespace aos {
 
@@ -43,10 +44,10 @@ inline std::string base64_of(const unsigned char* bytes, std::size_t size) {
   return text;
 }
 
-inline std::optional<std::vector<unsigned char>> bytes_of_base64(std::string_view text) {
+inline std::optional<List<unsigned char>> bytes_of_base64(std::string_view text) {
   if (text.size() % 4 != 0) return std::nullopt;
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-  std::vector<unsigned char> bytes;
+  List<unsigned char> bytes;
   bytes.reserve(text.size() * 3 / 4);
   unsigned group = 0;
   int bits = 0;
@@ -67,18 +68,18 @@ inline std::optional<std::vector<unsigned char>> bytes_of_base64(std::string_vie
 }  // namespace detail
 
 template <class Number>
-std::string to_base64(const std::vector<Number>& numbers) {
+std::string to_base64(const List<Number>& numbers) {
   static_assert(std::is_arithmetic_v<Number>);
   return detail::base64_of(reinterpret_cast<const unsigned char*>(numbers.data()), numbers.size() * sizeof(Number));
 }
 
 // Returns nothing if the text is not base64, or if its bytes do not fill a whole number of `Number`s.
 template <class Number>
-std::optional<std::vector<Number>> from_base64(std::string_view text) {
+std::optional<List<Number>> from_base64(std::string_view text) {
   static_assert(std::is_arithmetic_v<Number>);
   const auto bytes = detail::bytes_of_base64(text);
   if (!bytes || bytes->size() % sizeof(Number) != 0) return std::nullopt;
-  std::vector<Number> numbers(bytes->size() / sizeof(Number));
+  List<Number> numbers(bytes->size() / sizeof(Number));
   if (!bytes->empty()) std::memcpy(numbers.data(), bytes->data(), bytes->size());
   return numbers;
 }

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
+#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
@@ -122,7 +123,7 @@ class BeliefTree final : public TreePlanner<Model> {
     double mean = 0;     // of the values of the beliefs after it
     double squares = 0;  // of their distances from it, on average
     std::uint32_t n = 0;
-    std::vector<std::uint32_t> children;  // as they were drawn: an equal belief comes again
+    List<std::uint32_t> children;  // as they were drawn: an equal belief comes again
   };
   struct Node {
     std::size_t first = 0;  // its states
@@ -215,7 +216,7 @@ class BeliefTree final : public TreePlanner<Model> {
     if (!goes_on) return false;
     const auto [like, share] = most_like();
     next_.keep(random);
-    const std::vector<std::uint32_t>& known = actions_of(node)[a].children;
+    const List<std::uint32_t>& known = actions_of(node)[a].children;
     const BeliefKey key = key_of(next_.after());
     const auto same = std::ranges::find_if(known, [&](std::uint32_t child) { return nodes_[child].key == key; });
     const bool is_new = same == known.end();
@@ -341,10 +342,10 @@ class BeliefTree final : public TreePlanner<Model> {
   int horizon_ = 0;
   BarredActions barred_;
   Operations work_ = 0;
-  std::vector<Node> nodes_;
-  std::vector<ActionNode> actions_;  // of the nodes in turn
+  List<Node> nodes_;
+  List<ActionNode> actions_;  // of the nodes in turn
   SmallBelief states_;               // of the nodes in turn
-  std::vector<Visit> visits_;        // of the simulation that runs
+  List<Visit> visits_;        // of the simulation that runs
 };
 
 }

@@ -8,6 +8,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/random.hpp"
@@ -18,8 +19,8 @@ namespace aos {
 // What one run reported, in numbers. Reports of one kind have as many pieces, and numbers of the same names.
 struct NumberedReport {
   std::uint32_t kind = 0;
-  std::vector<std::uint32_t> symbols;        // of the pieces
-  std::vector<std::uint32_t> distributions;  // of the numbers
+  List<std::uint32_t> symbols;        // of the pieces
+  List<std::uint32_t> distributions;  // of the numbers
 };
 
 // An observation that was drawn from a table.
@@ -27,8 +28,8 @@ struct TabledObservation {
   static constexpr std::uint32_t nothing = 0xffffffffu;
 
   std::uint32_t kind = nothing;
-  std::vector<std::uint32_t> symbols;
-  std::vector<double> values;  // of the numbers
+  List<std::uint32_t> symbols;
+  List<double> values;  // of the numbers
   double log_density = 0;
 };
 
@@ -48,8 +49,8 @@ class ObservationTables {
   }
 
   // Adds a table, and returns its number.
-  std::uint32_t add(const std::vector<NumberedReport>& reports) {
-    std::map<std::pair<std::uint32_t, std::vector<std::uint32_t>>, std::vector<const NumberedReport*>> by_form;
+  std::uint32_t add(const List<NumberedReport>& reports) {
+    std::map<std::pair<std::uint32_t, List<std::uint32_t>>, List<const NumberedReport*>> by_form;
     for (const NumberedReport& report : reports) by_form[{report.kind, report.distributions}].push_back(&report);
     const std::uint32_t first = forms_.size();
     for (const auto& [form, same] : by_form) add_form(same, static_cast<double>(same.size()) / static_cast<double>(reports.size()));
@@ -113,12 +114,12 @@ class ObservationTables {
   }
 
  private:
-  using Key = std::vector<std::uint64_t>;
+  using Key = List<std::uint64_t>;
 
   // Probabilities of symbols. Symbols are numbered as they are met.
   struct Piece {
     std::uint32_t first = 0;
-    std::vector<float> odds;
+    List<float> odds;
     float probability(std::uint32_t symbol) const {
       return symbol - first < odds.size() ? odds[symbol - first] : 0.0f;
     }
@@ -145,7 +146,7 @@ class ObservationTables {
     std::uint32_t first, last;  // forms
   };
 
-  void add_form(const std::vector<const NumberedReport*>& reports, double share) {
+  void add_form(const List<const NumberedReport*>& reports, double share) {
     Form form{share, reports[0]->kind, static_cast<std::uint32_t>(piece_ids_.size()), 0,
               static_cast<std::uint32_t>(number_ids_.size()), 0};
     double known = 1;
@@ -159,7 +160,7 @@ class ObservationTables {
   }
 
   // Adds the table of a piece. Returns the share of the symbols that were seen once.
-  double add_piece(const std::vector<const NumberedReport*>& reports, std::size_t place) {
+  double add_piece(const List<const NumberedReport*>& reports, std::size_t place) {
     std::map<std::uint32_t, std::uint32_t> counts;
     for (const NumberedReport* report : reports) ++counts[report->symbols[place]];
     Key key;
@@ -183,12 +184,12 @@ class ObservationTables {
 
   double unknown_ = 0;
   double texts_ = 0;  // how many tables are of texts, in shares
-  std::vector<Table> tables_;
-  std::vector<Form> forms_;
-  std::vector<std::uint32_t> piece_ids_;
-  std::vector<std::uint32_t> number_ids_;
-  std::vector<Piece> pieces_;
-  std::vector<DescribedDistribution> distributions_;
+  List<Table> tables_;
+  List<Form> forms_;
+  List<std::uint32_t> piece_ids_;
+  List<std::uint32_t> number_ids_;
+  List<Piece> pieces_;
+  List<DescribedDistribution> distributions_;
   std::unordered_map<Key, std::uint32_t, NumbersHash> by_counts_;
   std::unordered_map<Key, std::uint32_t, NumbersHash> by_parameters_;
 };

@@ -1,6 +1,7 @@
 // A small belief of listed states, and what it becomes after an action and an observation that is drawn.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 #include "aos/planning/belief_tree/sensing_tables.hpp"
@@ -8,7 +9,7 @@
 
 namespace aos {
 
-using SmallBelief = std::vector<std::pair<std::uint32_t, float>>;  // distinct states with weights that sum to 1
+using SmallBelief = List<std::pair<std::uint32_t, float>>;  // distinct states with weights that sum to 1
 
 // Keeps some states of a belief, each with a probability that makes up for the others: systematic resampling.
 inline void thin_out(SmallBelief& belief, std::size_t most, Sampler& random) {
@@ -117,11 +118,11 @@ class SensedBelief {
   const StateSpace<Model>& space_;
   SensingTables<Model>& tables_;
   SmallBelief start_;
-  std::vector<Weighted> outcomes_;
+  List<Weighted> outcomes_;
   double running_ = 0;
   TabledObservation seen_;
   SmallBelief after_;
-  std::vector<std::uint32_t> place_;  // of states in `after_`
+  List<std::uint32_t> place_;  // of states in `after_`
 };
 
 }

@@ -2,6 +2,7 @@
 // that shape only what is observed come from strata, and the pieces of a text response are noted between them.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/directed.hpp"
 #include "aos/draws/distributions.hpp"
@@ -29,7 +30,7 @@ class Strata {
   }
 
  private:
-  std::unordered_map<std::uint64_t, std::vector<double>> columns_;  // by draw
+  std::unordered_map<std::uint64_t, List<double>> columns_;  // by draw
 };
 
 class SensedPath final : public DirectedDraws, private NumberSink {
@@ -38,14 +39,14 @@ class SensedPath final : public DirectedDraws, private NumberSink {
   static constexpr std::string_view separators = " ,;|\n\t";
   struct Report {
     Observation response = default_observation;  // -2 for a text
-    std::vector<std::string> pieces;
-    std::vector<std::pair<NumberKey, DescribedDistribution>> numbers;
+    List<std::string> pieces;
+    List<std::pair<NumberKey, DescribedDistribution>> numbers;
   };
 
   SensedPath() { report_to(this); }
 
   // Follows the enumerator and notes the outcomes of its draws.
-  void follow(Enumerator& path, std::vector<int>& taken) {
+  void follow(Enumerator& path, List<int>& taken) {
     start(0);
     path_ = &path;
     taken_ = &taken;
@@ -129,7 +130,7 @@ class SensedPath final : public DirectedDraws, private NumberSink {
 
   Strata strata_;
   Enumerator* path_ = nullptr;
-  std::vector<int>* taken_ = nullptr;
+  List<int>* taken_ = nullptr;
   std::span<const int> given_;
   std::size_t run_ = 0;
   std::size_t other_ = no_draw;
@@ -138,9 +139,9 @@ class SensedPath final : public DirectedDraws, private NumberSink {
   std::size_t since_cut_ = 0;  // of these
   bool is_lost_ = false;
   bool is_rewritten_ = false;
-  std::vector<std::pair<NumberKey, DescribedDistribution>> numbers_;
+  List<std::pair<NumberKey, DescribedDistribution>> numbers_;
   std::string written_;
-  std::vector<std::size_t> cuts_;
+  List<std::size_t> cuts_;
 };
 
 }

@@ -1,6 +1,7 @@
 // What model code reports on its way from a state to a next state, run by run, with other draws of the sensors.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/model/blame.hpp"
@@ -28,7 +29,7 @@ class SensingRuns {
     Enumerator draws;
     draws.skip_sensing(true);
     draws.report_to(&ignored_numbers);
-    std::vector<int> taken;
+    List<int> taken;
     State next;
     const auto run = [&](Enumerator& path) {
       ++count_;
@@ -97,7 +98,7 @@ class SensingRuns {
   struct Path {
     std::uint32_t next;
     double probability;
-    std::vector<int> taken;
+    List<int> taken;
   };
 
   // The paths to the next state have runs by their probabilities, in an order that is spread out.
@@ -115,8 +116,8 @@ class SensingRuns {
   SensedPath source_;
   std::uint32_t number_ = 0;
   int action_ = 0;
-  std::vector<Path> paths_;
-  std::vector<const Path*> paths_to_;
+  List<Path> paths_;
+  List<const Path*> paths_to_;
   double total_ = 0;
   std::string text_;
   std::uint64_t count_ = 0;

@@ -7,6 +7,7 @@
 // one does has tables of whole texts. Outcomes that give the same in the first runs share a table.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
@@ -105,8 +106,8 @@ class SensingTables {
     reports_.push_back(std::move(*report));
   }
 
-  std::vector<NumberedReport> numbered() {
-    std::vector<NumberedReport> result;
+  List<NumberedReport> numbered() {
+    List<NumberedReport> result;
     for (const Report& report : reports_) {
       NumberedReport& numbers = result.emplace_back();
       numbers.kind = kind_of(report);
@@ -120,12 +121,12 @@ class SensingTables {
     return symbols_.try_emplace(std::to_string(skill_) + "=" + piece, static_cast<std::uint32_t>(symbols_.size())).first->second;
   }
   std::uint32_t kind_of(const Report& report) {
-    std::vector<std::uint64_t> key{static_cast<std::uint64_t>(report.response), report.pieces.size()};
+    List<std::uint64_t> key{static_cast<std::uint64_t>(report.response), report.pieces.size()};
     for (const auto& [name, distribution] : report.numbers) key.push_back(name);
     return kinds_.try_emplace(std::move(key), static_cast<std::uint32_t>(kinds_.size())).first->second;
   }
-  static std::uint64_t hash_of(const std::vector<NumberedReport>& reports) {
-    std::vector<std::uint64_t> key;
+  static std::uint64_t hash_of(const List<NumberedReport>& reports) {
+    List<std::uint64_t> key;
     for (const NumberedReport& report : reports) {
       key.push_back(report.kind);
       key.insert(key.end(), report.symbols.begin(), report.symbols.end());
@@ -145,15 +146,15 @@ class SensingTables {
   SensingRuns<Model> runs_;
   std::uint64_t restarts_ = 0;
   std::uint64_t version_ = 0;
-  std::vector<std::uint32_t> table_of_;  // by outcome
+  List<std::uint32_t> table_of_;  // by outcome
   std::vector<bool> whole_;              // by skill: texts are not parted
   ObservationTables tables_;
   std::unordered_map<std::uint64_t, std::uint32_t> by_reports_;  // by a hash of the first ones
-  std::unordered_map<std::vector<std::uint64_t>, std::uint32_t, NumbersHash> kinds_;
+  std::unordered_map<List<std::uint64_t>, std::uint32_t, NumbersHash> kinds_;
   std::unordered_map<std::string, std::uint32_t> symbols_;  // pieces
 
   int skill_ = 0;  // whose reports these are
-  std::vector<Report> reports_;
+  List<Report> reports_;
 };
 
 }

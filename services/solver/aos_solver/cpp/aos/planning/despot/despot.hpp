@@ -13,6 +13,7 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
+#include "aos/base/list.hpp"
 #include "aos/base/room.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
@@ -172,7 +173,7 @@ class Despot final : public TreePlanner<Model> {
     if (outcomes_.empty()) return false;
     origin_ = 0;
     for (const Observed<Model>& outcome : outcomes_) origin_ += evaluation_.origin(outcome.scenario.seen) / scenario_count_;
-    const std::vector<ScenarioBounds>& bounds = evaluation_.bounds(outcomes_, 0);
+    const List<ScenarioBounds>& bounds = evaluation_.bounds(outcomes_, 0);
     penalty_ = penalty_in_deviations * evaluation_.deviation() / scenario_count_;
     add_node(0, outcomes_.size(), 0, no_node, bounds);
     expand(0);
@@ -212,7 +213,7 @@ class Despot final : public TreePlanner<Model> {
 
   // Adds a node for the outcomes from `first` to `last`.
   std::uint32_t add_node(std::size_t first, std::size_t last, int depth, std::uint32_t parent,
-                         const std::vector<ScenarioBounds>& bounds) {
+                         const List<ScenarioBounds>& bounds) {
     ScenarioBounds sum;
     const std::size_t first_scenario = scenarios_.size();
     for (std::size_t i = first; i < last; ++i) {
@@ -273,7 +274,7 @@ class Despot final : public TreePlanner<Model> {
     const std::uint32_t action_number = actions_.size();
     const double earned = weight_at(depth) * reward - penalty_;
     ActionNode& action = actions_.emplace_back(ActionNode{number, no_node, number == 0 ? 1u : 0u, earned, earned, earned});
-    const std::vector<ScenarioBounds>& bounds = evaluation_.bounds(outcomes_, depth + 1);
+    const List<ScenarioBounds>& bounds = evaluation_.bounds(outcomes_, depth + 1);
     for_each_history(outcomes_, [&](std::size_t first, std::size_t last) {
       const std::uint32_t child = add_node(first, last, depth + 1, action_number, bounds);
       nodes_[child].sibling = std::exchange(action.first_child, child);
@@ -389,12 +390,12 @@ class Despot final : public TreePlanner<Model> {
   std::size_t scenario_count_ = 0;
   double origin_ = 0;  // the value that all others are relative to
   double penalty_ = 0;
-  std::vector<Node> nodes_;
-  std::vector<ActionNode> actions_;
-  std::vector<Scenario<Model>> scenarios_;
-  std::vector<Observed<Model>> outcomes_;  // of the action that is being tried
-  std::vector<double> deviations_;  // standard errors of the root's actions that were tried
-  std::vector<double> rewards_;     // mean immediate rewards of these actions
+  List<Node> nodes_;
+  List<ActionNode> actions_;
+  List<Scenario<Model>> scenarios_;
+  List<Observed<Model>> outcomes_;  // of the action that is being tried
+  List<double> deviations_;  // standard errors of the root's actions that were tried
+  List<double> rewards_;     // mean immediate rewards of these actions
 };
 
 }

@@ -3,6 +3,7 @@
 // listed, a step is a draw from the list, whatever the documents' code takes.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
@@ -98,7 +99,7 @@ class ScenarioEvaluation {
   }
 
   // The bounds of each scenario. All have the same history but for the last observation, by which they are sorted.
-  const std::vector<ScenarioBounds>& bounds(const std::vector<Observed<Model>>& scenarios, int depth) {
+  const List<ScenarioBounds>& bounds(const List<Observed<Model>>& scenarios, int depth) {
     bounds_.assign(scenarios.size(), {});
     earned_.assign(scenarios.size(), 0);
     followers_.clear();
@@ -254,11 +255,11 @@ class ScenarioEvaluation {
   int horizon_ = 0;
   std::uint64_t seed_ = 0;
   Operations work_ = 0;
-  std::vector<ScenarioBounds> bounds_;
-  std::vector<double> earned_;  // by scenario
+  List<ScenarioBounds> bounds_;
+  List<double> earned_;  // by scenario
   Earnings best_;
-  std::vector<Follower> followers_;
-  std::vector<double> sums_;
+  List<Follower> followers_;
+  List<double> sums_;
 };
 
 }

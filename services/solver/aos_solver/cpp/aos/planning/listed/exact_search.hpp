@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
+#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
@@ -113,7 +114,7 @@ class ExactSearch final : public Planner<Model> {
 
   const StateSpace<Model>& space_;
   ObservableValues observable_;
-  std::vector<ExactValue> values_;  // by action
+  List<ExactValue> values_;  // by action
   double error_ = 0;                // of the values, at most
   double mean_loss_ = 0;
   double loss_error_ = 0;

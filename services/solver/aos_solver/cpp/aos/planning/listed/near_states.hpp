@@ -2,6 +2,7 @@
 // count of steps. A search with a horizon needs no others.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/listed/state_space.hpp"
@@ -65,7 +66,7 @@ class NearStates {
   }
 
   StateSpace<Model> space_;
-  std::vector<int> distances_;  // of states from the belief of the list, in decisions
+  List<int> distances_;  // of states from the belief of the list, in decisions
   int decisions_ = 0;           // that are listed from that belief
   int lists_ = 0;               // of this mission
   std::size_t given_up_with_ = any_number;  // states of the belief

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "aos/base/list.hpp"
 #include "aos/planning/listed/number_grid.hpp"
 #include "aos/planning/listed/number_reports.hpp"
 #include "point_based/flat_model.hpp"
@@ -27,7 +28,7 @@ class NumberCells {
     make_grids(reports);
     for (NumberGrid& grid : grids_) grid.merge_alike();
     max = std::min(max, max_likelihoods / std::max<std::size_t>(reports.reports().size(), 1));
-    std::set<std::vector<std::uint32_t>> sets;
+    std::set<List<std::uint32_t>> sets;
     for (const auto& report : reports.reports()) sets.insert(gauges_of(reports, report));
     max_cells_ = 1;
     for (const auto& gauges : sets) {
@@ -70,18 +71,18 @@ class NumberCells {
  private:
   static constexpr std::size_t max_likelihoods = 8'000'000;
 
-  static std::vector<std::uint32_t> gauges_of(const NumberReports& reports, const NumberReports::Report& report) {
-    std::vector<std::uint32_t> gauges;
+  static List<std::uint32_t> gauges_of(const NumberReports& reports, const NumberReports::Report& report) {
+    List<std::uint32_t> gauges;
     for (const std::uint32_t part : report.parts) gauges.push_back(reports.parts()[part].gauge);
     return gauges;
   }
 
   void make_grids(const NumberReports& reports) {
-    std::vector<double> weights(reports.parts().size());
+    List<double> weights(reports.parts().size());
     for (const auto& report : reports.reports()) {
       for (const std::uint32_t part : report.parts) ++weights[part];
     }
-    std::vector<std::vector<NumberGrid::Source>> sources(reports.gauges());
+    List<List<NumberGrid::Source>> sources(reports.gauges());
     for (std::size_t part = 0; part < weights.size(); ++part) {
       const auto& [gauge, distribution] = reports.parts()[part];
       sources[gauge].push_back({&distribution, weights[part]});
@@ -90,7 +91,7 @@ class NumberCells {
     for (const auto& of_gauge : sources) grids_.emplace_back(of_gauge);
   }
 
-  std::size_t combinations(const std::vector<std::uint32_t>& gauges) const {
+  std::size_t combinations(const List<std::uint32_t>& gauges) const {
     std::size_t product = 1;
     for (const std::uint32_t gauge : gauges) {
       if (product > max_likelihoods) break;
@@ -100,7 +101,7 @@ class NumberCells {
   }
 
   // The grid that loses least for the combinations that its next merge saves; null if all grids have two cells.
-  NumberGrid* next_to_merge(const std::vector<std::uint32_t>& gauges) {
+  NumberGrid* next_to_merge(const List<std::uint32_t>& gauges) {
     NumberGrid* next = nullptr;
     double min_loss = std::numeric_limits<double>::infinity();
     for (const std::uint32_t gauge : gauges) {
@@ -118,29 +119,29 @@ class NumberCells {
   // Numbers the observations. A response with a set of numbers takes consecutive ones, one for each
   // combination of cells.
   void expand(const NumberReports& reports) {
-    std::vector<std::vector<double>> probabilities;
+    List<List<double>> probabilities;
     for (const auto& [gauge, distribution] : reports.parts()) {
       probabilities.push_back(grids_[gauge].probabilities_of(distribution));
     }
-    std::map<std::pair<std::uint32_t, std::vector<std::uint32_t>>, std::uint32_t> first;
+    std::map<std::pair<std::uint32_t, List<std::uint32_t>>, std::uint32_t> first;
     observations_ = 0;
     cells_of_.clear();
     for (const auto& report : reports.reports()) {
-      std::vector<std::uint32_t> gauges = gauges_of(reports, report);
+      List<std::uint32_t> gauges = gauges_of(reports, report);
       const std::size_t count = combinations(gauges);
       const auto number = static_cast<std::uint32_t>(observations_);
       const auto [entry, is_new] = first.try_emplace({report.response, std::move(gauges)}, number);
       if (is_new) observations_ += count;
-      std::vector<point_based::Likelihood> cells{{0, 1.0}};
+      List<point_based::Likelihood> cells{{0, 1.0}};
       for (const std::uint32_t part : report.parts) cells = multiplied(cells, probabilities[part]);
       for (point_based::Likelihood& cell : cells) cell.observation += entry->second;
       cells_of_.push_back(without_the_unlikeliest(std::move(cells)));
     }
   }
 
-  static std::vector<point_based::Likelihood> multiplied(const std::vector<point_based::Likelihood>& cells,
-                                                      const std::vector<double>& by) {
-    std::vector<point_based::Likelihood> result;
+  static List<point_based::Likelihood> multiplied(const List<point_based::Likelihood>& cells,
+                                                      const List<double>& by) {
+    List<point_based::Likelihood> result;
     for (const auto& [observation, probability] : cells) {
       for (std::size_t cell = 0; cell < by.size(); ++cell) {
         const auto number = static_cast<std::uint32_t>(observation * by.size() + cell);
@@ -151,10 +152,10 @@ class NumberCells {
   }
 
   // Gives the probability of negligible cells to the likeliest cell.
-  static std::vector<point_based::Likelihood> without_the_unlikeliest(std::vector<point_based::Likelihood> cells) {
+  static List<point_based::Likelihood> without_the_unlikeliest(List<point_based::Likelihood> cells) {
     constexpr double min_probability = error / (4 * static_cast<double>(max_combinations));
     double left_out = 0;
-    std::erase_if(cells, [&](const point_based::Likelihood& cell) {
+    erase_if(cells, [&](const point_based::Likelihood& cell) {
       if (cell.probability > min_probability) return false;
       left_out += cell.probability;
       return true;
@@ -164,8 +165,8 @@ class NumberCells {
     return cells;
   }
 
-  std::vector<NumberGrid> grids_;                             // by gauge
-  std::vector<std::vector<point_based::Likelihood>> cells_of_;  // by report
+  List<NumberGrid> grids_;                             // by gauge
+  List<List<point_based::Likelihood>> cells_of_;  // by report
   std::size_t observations_ = 0;
   std::size_t max_cells_ = 1;
 };

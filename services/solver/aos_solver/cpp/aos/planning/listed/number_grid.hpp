@@ -4,6 +4,7 @@
 // (the agglomerative information bottleneck: Slonim and Tishby, 1999; only neighbours are merged here).
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/described_distribution.hpp"
 
 namespace aos {
@@ -16,16 +17,16 @@ class NumberGrid {
   };
 
   // Begins with small cells. The sources must not be empty.
-  explicit NumberGrid(const std::vector<Source>& sources) {
+  explicit NumberGrid(const List<Source>& sources) {
     edges_ = first_edges(sources);
     double total = 0;
     const std::size_t step = 1 + sources.size() / max_sources;
     for (std::size_t i = 0; i < sources.size(); i += step) total += sources[i].weight;
     joint_.assign(cells(), {});
-    std::vector<double> whole;
+    List<double> whole;
     for (std::size_t i = 0; i < sources.size(); i += step) {
       const double weight = sources[i].weight / total;
-      const std::vector<double> probabilities = probabilities_of(*sources[i].distribution);
+      const List<double> probabilities = probabilities_of(*sources[i].distribution);
       for (std::size_t cell = 0; cell < cells(); ++cell) joint_[cell].push_back(weight * probabilities[cell]);
       whole.push_back(weight);
     }
@@ -59,8 +60,8 @@ class NumberGrid {
   }
 
   // The probability of each cell under a distribution.
-  std::vector<double> probabilities_of(const DescribedDistribution& distribution) const {
-    std::vector<double> probabilities;
+  List<double> probabilities_of(const DescribedDistribution& distribution) const {
+    List<double> probabilities;
     double before = 0;
     for (const double edge : edges_) {
       const double below = distribution.below(edge);
@@ -77,21 +78,21 @@ class NumberGrid {
   static constexpr double negligible_share = 0.001;
   static constexpr double negligible_loss = 1e-12;
 
-  static std::vector<double> first_edges(const std::vector<Source>& sources) {
-    std::vector<double> edges;
+  static List<double> first_edges(const List<Source>& sources) {
+    List<double> edges;
     for (const Source& source : sources) source.distribution->add_edges(edges);
     std::sort(edges.begin(), edges.end());
     const double too_near = edges.empty() ? 0 : 1e-9 * (edges.back() - edges.front());
     const auto is_same = [&](double left, double right) { return right - left <= too_near; };
     edges.erase(std::unique(edges.begin(), edges.end(), is_same), edges.end());
     if (edges.size() < max_cells) return edges;
-    std::vector<double> some;
+    List<double> some;
     for (std::size_t i = 0; i + 1 < max_cells; ++i) some.push_back(edges[i * (edges.size() - 1) / (max_cells - 2)]);
     return some;
   }
 
   // What a cell adds to the information. `parts` are its joint probabilities with each distribution.
-  static double information_of(const std::vector<double>& parts) {
+  static double information_of(const List<double>& parts) {
     double sum = 0;
     double added = 0;
     for (const double part : parts) {
@@ -102,14 +103,14 @@ class NumberGrid {
     return sum > 0 ? added - sum * std::log(sum) : 0;
   }
   double loss_at(std::size_t cell) const {
-    std::vector<double> merged = joint_[cell];
+    List<double> merged = joint_[cell];
     for (std::size_t i = 0; i < merged.size(); ++i) merged[i] += joint_[cell + 1][i];
     return information_of(joint_[cell]) + information_of(joint_[cell + 1]) - information_of(merged);
   }
 
-  std::vector<double> edges_;  // between cells; an edge belongs to the cell above it
-  std::vector<std::vector<double>> joint_;  // by cell: its joint probability with each distribution
-  std::vector<double> losses_;             // of merging a cell with the next
+  List<double> edges_;  // between cells; an edge belongs to the cell above it
+  List<List<double>> joint_;  // by cell: its joint probability with each distribution
+  List<double> losses_;             // of merging a cell with the next
   double information_ = 0;  // of the first cells, in nats
 };
 

@@ -5,6 +5,7 @@
 
 #include <unordered_map>
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/distributions.hpp"
@@ -22,7 +23,7 @@ class NumberReports final : public NumberSink {
   };
   struct Report {
     std::uint32_t response;
-    std::vector<std::uint32_t> parts;  // by gauge, ascending
+    List<std::uint32_t> parts;  // by gauge, ascending
   };
 
   void begin() override { taken_.clear(); }
@@ -60,14 +61,14 @@ class NumberReports final : public NumberSink {
     return entry->second;
   }
 
-  const std::vector<Report>& reports() const { return reports_; }
-  const std::vector<Part>& parts() const { return parts_; }
+  const List<Report>& reports() const { return reports_; }
+  const List<Part>& parts() const { return parts_; }
   std::size_t gauges() const { return gauges_.size(); }
   // Whether there are too many reports to tell all of them apart.
   bool is_full() const { return is_full_; }
 
  private:
-  using Key = std::vector<std::uint64_t>;
+  using Key = List<std::uint64_t>;
   static constexpr std::size_t max_size = 2'000'000;  // of numbers in all reports
 
   std::uint64_t part_of(int skill, NumberKey number, DescribedDistribution& distribution) {
@@ -80,9 +81,9 @@ class NumberReports final : public NumberSink {
     return entry->second;
   }
 
-  std::vector<std::pair<NumberKey, DescribedDistribution>> taken_;  // since the step began
-  std::vector<Report> reports_;
-  std::vector<Part> parts_;
+  List<std::pair<NumberKey, DescribedDistribution>> taken_;  // since the step began
+  List<Report> reports_;
+  List<Part> parts_;
   std::unordered_map<std::uint64_t, std::uint32_t> gauges_;
   std::unordered_map<Key, std::uint64_t, NumbersHash> by_distribution_;
   std::unordered_map<Key, std::uint32_t, NumbersHash> by_key_;

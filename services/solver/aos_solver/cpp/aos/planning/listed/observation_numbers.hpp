@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <unordered_map>
-#include <vector>
 
+#include "aos/base/list.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {
@@ -34,7 +34,7 @@ class ObservationNumbers {
 
   std::size_t size() const { return texts_.size(); }
   const std::string& operator[](std::uint32_t number) const { return texts_[number]; }
-  const std::vector<std::string>& texts() const { return texts_; }
+  const List<std::string>& texts() const { return texts_; }
 
  private:
   static constexpr std::uint32_t unknown = 0xffffffffu;
@@ -47,10 +47,10 @@ class ObservationNumbers {
     return number = named->second;
   }
 
-  std::vector<std::vector<std::uint32_t>> of_responses_;      // by skill
+  List<List<std::uint32_t>> of_responses_;      // by skill
   std::unordered_map<Observation, std::uint32_t> of_others_;  // texts, and no response
   std::unordered_map<std::string, std::uint32_t> by_text_;
-  std::vector<std::string> texts_;
+  List<std::string> texts_;
 };
 
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
+#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
@@ -159,7 +160,7 @@ class PointBased {
     const auto [worst, best] = search_->bounds();
     const double left = is_endless_ && missions_ == 0 ? std::pow(Model::discount, horizon_) : 0;
     const double lost = later_ + std::max(loss_, 0.0), gained = std::max(-loss_, 0.0);
-    std::vector<double> lowers, uppers;
+    List<double> lowers, uppers;
     for (const point_based::ActionBounds& bounds : search_->action_bounds()) {
       const double going_on = left * bounds.goes_on;
       uppers.push_back(bounds.upper + error_ - lost - going_on * std::min(worst, 0.0));
@@ -217,7 +218,7 @@ class PointBased {
     return anew_ ? promised - (anew_->value - 2 * anew_->standard_error) : std::abs(promised);
   }
 
-  std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
+  std::string take_model(const List<std::pair<std::uint32_t, double>>& entries) {
     point_based::FlatModel model = flat_model();
     error_ = error_of(model);
     const double most_later = is_long() || is_large(model) ? point_based::much : point_based::next_to_nothing;
@@ -278,7 +279,7 @@ class PointBased {
   const StateSpace<Model>& space_;
   const bool may_be_endless_;
   Numbering numbering_;                          // of the model that was taken
-  std::vector<point_based::Start> starts_;  // only one unless something surprising has happened
+  List<point_based::Start> starts_;  // only one unless something surprising has happened
   std::unique_ptr<point_based::OnlineSarsop> search_;
   int horizon_ = 1;  // decisions
   bool is_endless_ = false;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
 #include "aos/model/reflection.hpp"
@@ -23,7 +24,7 @@ class StateNumbers {
 
   StateNumbers() {
     const std::size_t bytes = Model::state_bytes();
-    std::vector<unsigned char> mask(bytes, 0xff);
+    List<unsigned char> mask(bytes, 0xff);
     for (const ByteRange& range : Model::irrelevant()) std::memset(mask.data() + range.offset, 0, range.size);
     for (std::size_t begin = 0; begin < bytes; begin += 8) {
       const std::size_t size = std::min<std::size_t>(8, bytes - begin);
@@ -105,8 +106,8 @@ class StateNumbers {
     const std::size_t before = words_.size();
     const auto differs = [&](const Word& word) { return read(state, word) != word.first; };
     std::ranges::copy_if(same_, std::back_inserter(words_), differs);
-    std::erase_if(same_, differs);
-    std::vector<std::uint64_t> kept;
+    erase_if(same_, differs);
+    List<std::uint64_t> kept;
     kept.reserve(size_ * words_.size());
     for (std::size_t number = 0; number < size_; ++number) {
       for (std::size_t i = 0; i < words_.size(); ++i) {
@@ -139,9 +140,9 @@ class StateNumbers {
   }
 
   std::optional<State> first_;
-  std::vector<Word> same_;           // in all states
-  std::vector<Word> words_;          // which tell states apart
-  std::vector<std::uint64_t> kept_;  // these words, state by state
+  List<Word> same_;           // in all states
+  List<Word> words_;          // which tell states apart
+  List<std::uint64_t> kept_;  // these words, state by state
   std::uint32_t size_ = 0;
   NumberIndex numbers_;
 };

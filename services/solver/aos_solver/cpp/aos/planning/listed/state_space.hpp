@@ -4,6 +4,7 @@
 
 #include "aos/base/add_up.hpp"
 #include "aos/base/fault.hpp"
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/statistics.hpp"
@@ -134,8 +135,8 @@ class StateSpace {
   bool reaches(Ending ending) const { return lister_.reaches(ending); }
 
   // The running part of a belief, by ascending numbers. The weights are not normalised.
-  std::vector<std::pair<std::uint32_t, double>> weights_of(const Belief<Model>& belief) const {
-    std::vector<std::pair<std::uint32_t, double>> weights;
+  List<std::pair<std::uint32_t, double>> weights_of(const Belief<Model>& belief) const {
+    List<std::pair<std::uint32_t, double>> weights;
     for (const auto& [state, weight] : belief.particles()) {
       if (Model::ending(state) == Ending::running) weights.emplace_back(lister_.numbers().find(state), weight);
     }
@@ -155,7 +156,7 @@ class StateSpace {
   static constexpr std::uint32_t fewest_priced = 16;  // states
   static constexpr double far_more = 4;  // times the limit
 
-  using SensingKey = std::vector<std::uint64_t>;  // of observations with their probabilities
+  using SensingKey = List<std::uint64_t>;  // of observations with their probabilities
   // A path through an action after which the mission goes on.
   struct Path {
     std::uint32_t next;
@@ -312,8 +313,8 @@ class StateSpace {
   std::size_t first_given_up_with_ = 0;  // in the first try
 
   std::unordered_map<SensingKey, std::uint32_t, NumbersHash> sensings_;
-  std::vector<Path> paths_;
-  std::vector<point_based::Likelihood> likelihoods_;
+  List<Path> paths_;
+  List<point_based::Likelihood> likelihoods_;
   SensingKey key_;
 };
 

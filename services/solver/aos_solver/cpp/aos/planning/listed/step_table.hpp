@@ -4,6 +4,7 @@
 // as it is and makes their spread smaller.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/alias.hpp"
 #include "aos/model/step.hpp"
@@ -31,7 +32,7 @@ class StepTable {
     if (!space.lists_observations() || space.estimates_draws()) return false;
     if (space.numbering() != numbering_) list(space);
     if (!is_small_) return false;
-    std::vector<typename AliasColumns<std::uint32_t>::Weighted> starts;
+    List<typename AliasColumns<std::uint32_t>::Weighted> starts;
     double running = 0;
     for (const auto& [number, weight] : space.weights_of(belief)) {
       starts.push_back({number, weight});
@@ -96,10 +97,10 @@ class StepTable {
   Numbering numbering_;
   std::size_t actions_ = 0;
   bool is_small_ = false;
-  std::vector<Row> rows_;  // by state and action
-  std::vector<AliasColumn<Outcome>> columns_;
-  std::vector<AliasColumn<std::uint32_t>> starts_;
-  std::vector<typename AliasColumns<Outcome>::Weighted> outcomes_;  // of the row that is listed
+  List<Row> rows_;  // by state and action
+  List<AliasColumn<Outcome>> columns_;
+  List<AliasColumn<std::uint32_t>> starts_;
+  List<typename AliasColumns<Outcome>::Weighted> outcomes_;  // of the row that is listed
   AliasColumns<Outcome> columns_of_;
 };
 

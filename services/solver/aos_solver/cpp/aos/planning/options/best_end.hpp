@@ -4,6 +4,7 @@
 // after which an end earns most, and again, as long as that gains something. The state is seen.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -22,7 +23,7 @@ class BestEnd {
   // The way from a state to the end of the mission; empty if no action ends the mission at once without a failure, or if nothing is
   // earned in all. `steps` of the model are counted down.
   Option way_from(const State& start, double& steps, Sampler& random) const {
-    const std::vector<int> exits = exits_from(start, steps, random);
+    const List<int> exits = exits_from(start, steps, random);
     State state = start;
     Option way;
     End end = best_end(state, exits, steps, random);
@@ -53,19 +54,19 @@ class BestEnd {
   };
 
   // The actions that end the mission at once without a failure: those that earn most.
-  std::vector<int> exits_from(const State& start, double& steps, Sampler& random) const {
-    std::vector<End> ends;
+  List<int> exits_from(const State& start, double& steps, Sampler& random) const {
+    List<End> ends;
     for (int action = 0; action < Model::action_count(); ++action, --steps) {
       if (const End end = end_by(start, action, random); end.action >= 0) ends.push_back(end);
     }
     sort_stably(ends, [](const End& one, const End& other) { return one.earned > other.earned; });
-    std::vector<int> exits;
+    List<int> exits;
     for (std::size_t i = 0; i < std::min(most_exits, ends.size()); ++i) exits.push_back(ends[i].action);
     return exits;
   }
 
   // Takes the action after which an end earns more than the one at hand does, and most. Returns it; -1 if there is none.
-  static int put_off(State& state, const End& end, const std::vector<int>& exits, double& steps, Sampler& random) {
+  static int put_off(State& state, const End& end, const List<int>& exits, double& steps, Sampler& random) {
     double most = end.earned;
     int chosen = -1;
     State after = state;
@@ -84,7 +85,7 @@ class BestEnd {
   }
 
   // The end at once that earns most, if any of the exits ends the mission.
-  static End best_end(const State& state, const std::vector<int>& exits, double& steps, Sampler& random) {
+  static End best_end(const State& state, const List<int>& exits, double& steps, Sampler& random) {
     End best;
     for (const int action : exits) {
       const End end = end_by(state, action, random);

@@ -2,6 +2,7 @@
 // an observation after them, made several times. It may change the state, as a camera does that drains the battery.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -27,13 +28,13 @@ class OptionDetours {
       : belief_(belief), gains_(gains), clock_(clock) {}
 
   // The ways that are found, if waiting returns so much. `steps` is counted down.
-  std::vector<OptionCandidate> find(const std::vector<int>& moves, double waiting, const BarredActions& barred, double& steps, Sampler& random) {
+  List<OptionCandidate> find(const List<int>& moves, double waiting, const BarredActions& barred, double& steps, Sampler& random) {
     waiting_ = waiting;
     looks_.clear();
     telling_.assign(Model::action_count(), false);
     double weighing = steps / 2;
     steps -= weighing;
-    std::vector<Ahead> ones{{{}, belief_.states()}};
+    List<Ahead> ones{{{}, belief_.states()}};
     look_after(ones.front(), barred, false, steps, random);
     for (const int move : moves) {
       ones.push_back(after(ones.front(), move, steps, random));
@@ -43,7 +44,7 @@ class OptionDetours {
       for (const int move : moves) look_after(after(ones[i], move, steps, random), barred, true, steps, random);
     }
     sort_stably(looks_, [](const Look& one, const Look& other) { return one.ahead.paid > other.ahead.paid; });
-    std::vector<OptionCandidate> found;
+    List<OptionCandidate> found;
     for (const Look& look : looks_) {
       if (weighing > 0 && !clock_.is_over()) weigh(look, found, weighing);
     }
@@ -63,7 +64,7 @@ class OptionDetours {
   // Where some moves lead, which go on for certain if `goes_on`.
   struct Ahead {
     Option way;
-    std::vector<State> states;
+    List<State> states;
     double paid = 0;
     double discount = 1;
     bool goes_on = true;
@@ -71,7 +72,7 @@ class OptionDetours {
   struct Look {
     Ahead ahead;
     int action;
-    std::vector<StepReports> reports;  // by state
+    List<StepReports> reports;  // by state
     double reward = 0;
   };
 
@@ -112,7 +113,7 @@ class OptionDetours {
     }
   }
 
-  void weigh(const Look& look, std::vector<OptionCandidate>& found, double& steps) const {
+  void weigh(const Look& look, List<OptionCandidate>& found, double& steps) const {
     constexpr double of_gain = 0.03;  // as many steps of the model take as long as to find what an option returns in a state
     const RepeatedObservation observation{look.reports};
     double paid = look.ahead.paid, discount = look.ahead.discount;
@@ -145,7 +146,7 @@ class OptionDetours {
   ReportedStep<Model> step_;
   double waiting_ = 0;
   std::vector<bool> telling_;  // by action
-  std::vector<Look> looks_;
+  List<Look> looks_;
 };
 
 }

@@ -2,6 +2,7 @@
 // them earns anything, a search looks for another one.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_library.hpp"
@@ -63,7 +64,7 @@ class OptionFollowing {
 
   Best best_known(const State& state, std::size_t horizon, double& left, Sampler& random) const {
     first_.clear();
-    for (const std::vector<Option>* options : {&library_.options(), &std::as_const(found_)}) {
+    for (const List<Option>* options : {&library_.options(), &std::as_const(found_)}) {
       for (const Option& option : *options) {
         if (option.size() > horizon) continue;
         State next = state;
@@ -92,7 +93,7 @@ class OptionFollowing {
 
   Best best_searched(const State& state, std::size_t horizon, double& left, Sampler& random) const {
     OptionSearch<Model> search{library_.searched_cells(), library_.clock(), library_.retries(), library_.counts()};
-    const std::vector<Option> ways = search.from(state, left, random);
+    const List<Option> ways = search.from(state, left, random);
     if (ways.empty() || ways.front().size() > horizon) return {};
     if (found_.size() < most_found) found_.push_back(ways.front());
     return tried(ways.front(), state, left, random);
@@ -109,8 +110,8 @@ class OptionFollowing {
   }
 
   const OptionLibrary<Model>& library_;
-  mutable std::vector<Tried> first_;
-  mutable std::vector<Option> found_;
+  mutable List<Tried> first_;
+  mutable List<Option> found_;
 };
 
 }

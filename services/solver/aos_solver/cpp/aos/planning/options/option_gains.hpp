@@ -6,6 +6,7 @@
 // that is observed on the way counts.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -23,8 +24,8 @@ class OptionGains {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
   // Takes each option from each state. What changes by itself touches nothing. Options for which there is no time earn nothing.
-  void measure(const auto& library, const std::vector<State>& states, const OwnChanges<Model>& changes, double& steps, Sampler& random) {
-    const std::vector<Option>& options = library.options();
+  void measure(const auto& library, const List<State>& states, const OwnChanges<Model>& changes, double& steps, Sampler& random) {
+    const List<Option>& options = library.options();
     const LeafCells<Model>& cells = library.cells();
     options_ = &options;
     retries_ = library.retries();
@@ -181,22 +182,22 @@ class OptionGains {
     return option == before || (!ends_[before] && touches(option, before));
   }
 
-  const std::vector<Option>* options_ = nullptr;
+  const List<Option>* options_ = nullptr;
   std::size_t states_ = 0;
   const RunningDown<Model>* retries_ = nullptr;  // actions that change nothing else are taken again
-  std::vector<double> earned_;   // [option * states + state]
-  std::vector<double> goes_on_;  // [option * states + state]
-  std::vector<double> discounts_;
+  List<double> earned_;   // [option * states + state]
+  List<double> goes_on_;  // [option * states + state]
+  List<double> discounts_;
   std::vector<bool> ends_;  // in some state, and earns nothing where it does not
   std::vector<bool> earns_without_end_;
-  std::vector<std::vector<bool>> changed_;  // [option][variable]
+  List<std::vector<bool>> changed_;  // [option][variable]
   std::vector<bool> touches_;               // [option * options + option]
-  std::vector<std::uint64_t> before_;
-  std::vector<std::uint64_t> after_;
+  List<std::uint64_t> before_;
+  List<std::uint64_t> after_;
   mutable std::vector<bool> used_;
-  mutable std::vector<Weighted> support_;
-  mutable std::vector<Candidate> candidates_;
-  mutable std::vector<std::size_t> chosen_;
+  mutable List<Weighted> support_;
+  mutable List<Candidate> candidates_;
+  mutable List<std::size_t> chosen_;
 };
 
 }

@@ -1,6 +1,7 @@
 // The options that are known. They are found by searches from states of the belief, and kept from decision to decision.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
@@ -21,7 +22,7 @@ class OptionLibrary {
 
   explicit OptionLibrary(const DecisionClock& clock) : clock_(clock) {}
 
-  const std::vector<Option>& options() const { return options_; }
+  const List<Option>& options() const { return options_; }
   const LeafCells<Model>& cells() const { return cells_; }
   // Those by which searches for ways tell what is new.
   const LeafCells<Model>& searched_cells() const { return searched_cells_; }
@@ -50,7 +51,7 @@ class OptionLibrary {
   // with an option. `steps` is counted down.
   double extend(const SampledBelief<Model>& belief, double& steps, Sampler& random) {
     double found = 0;
-    std::vector<State> rests;
+    List<State> rests;
     for (std::size_t k = 0; k < belief.size(); ++k) {
       State state = belief.states()[k];
       const bool has_end = !counts_ && is_left(steps) && add_best_end(state, steps, random);
@@ -79,7 +80,7 @@ class OptionLibrary {
       if (switches::kept_ways && !taken.empty()) add({taken}, 2);
     }
     if (options_.size() <= many_options) return;
-    std::vector<Option> used;
+    List<Option> used;
     for (std::size_t o = 0; o < gains.size(); ++o) {
       if (gains.is_used(o)) used.push_back(std::move(options_[o]));
     }
@@ -107,7 +108,7 @@ class OptionLibrary {
   }
 
   // Adds options, and what is left of each after its first actions: at most so many for each. Returns whether there were any.
-  bool add(const std::vector<Option>& found, std::size_t most) {
+  bool add(const List<Option>& found, std::size_t most) {
     for (const Option& option : found) add_with_rests(options_, option, most, max_options);
     return !found.empty();
   }
@@ -137,7 +138,7 @@ class OptionLibrary {
   LeafCells<Model> cells_;
   LeafCells<Model> searched_cells_;
   RunningDown<Model> running_down_;
-  std::vector<Option> options_;
+  List<Option> options_;
   bool counts_ = false;
 };
 

@@ -1,6 +1,7 @@
 // What can be observed elsewhere: moves, with what is observed on the way or where they lead.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
@@ -25,7 +26,7 @@ class OptionMoves {
       : belief_(belief), regret_(regret), tests_(tests), values_(values) {}
 
   // Adds each of the moves, once or several times in a row, the latter while there are steps.
-  void add_to(std::vector<OptionCandidate>& candidates, const std::vector<int>& moves, double& steps, Sampler& random) {
+  void add_to(List<OptionCandidate>& candidates, const List<int>& moves, double& steps, Sampler& random) {
     for (int repeats = 1; repeats <= OptionTests<Model>::most_repeats; repeats *= 2) {
       for (const int move : moves) {
         if (repeats == 1 || (steps > 0 && !tests_.clock().is_over())) add_way(candidates, Option(static_cast<std::size_t>(repeats), move), steps, random);
@@ -42,8 +43,8 @@ class OptionMoves {
   };
 
   View best_view(int move, const BarredActions& barred, double& steps, Sampler& random) {
-    std::vector<State> now = belief_.states();
-    std::vector<StepReports> reports(now.size());
+    List<State> now = belief_.states();
+    List<StepReports> reports(now.size());
     double paid = 0;
     for (std::size_t k = 0; k < now.size(); ++k) paid += belief_.weights()[k] * step_.take(now[k], move, reports.front(), steps, random);
     View best{move};
@@ -67,14 +68,14 @@ class OptionMoves {
   }
 
   // Adds such a move.
-  void add_view(std::vector<OptionCandidate>& candidates, const View& view, double& steps, Sampler& random) {
+  void add_view(List<OptionCandidate>& candidates, const View& view, double& steps, Sampler& random) {
     if (view.test >= 0) add_way(candidates, {view.move, view.test}, steps, random);
   }
 
   // How much of the regret an observation spares after one of the likely options, but for what it tells of that option; as much as `here` for a test that
   // tells the same there.
   double spared_after(const Option& option, std::size_t likely, const Option& way, double here, double& steps, Sampler& random) {
-    std::vector<State> now = belief_.states();
+    List<State> now = belief_.states();
     StateWeights start = belief_.weights();
     double share = 0;
     for (std::size_t k = 0; k < now.size(); ++k) {
@@ -84,7 +85,7 @@ class OptionMoves {
     steps -= option.size() * now.size();
     if (share <= 0) return 0;
     for (double& weight : start) weight /= share;
-    std::vector<std::vector<StepReports>> reports(way.size(), std::vector<StepReports>(now.size()));
+    List<List<StepReports>> reports(way.size(), List<StepReports>(now.size()));
     for (std::size_t step = 0; step < way.size(); ++step) {
       for (std::size_t k = 0; k < now.size(); ++k) {
         if (start[k] > 0 && Model::ending(now[k]) == Ending::running) step_.take(now[k], way[step], reports[step][k], steps, random);
@@ -104,13 +105,13 @@ class OptionMoves {
 
  private:
   // Whether a test tells the same, as far as the mission goes on.
-  static bool tells_alike(const std::vector<StepReports>& there, const std::vector<StepReports>& here) {
+  static bool tells_alike(const List<StepReports>& there, const List<StepReports>& here) {
     return std::ranges::equal(there, here, [](const StepReports& one, const StepReports& other) { return one.branches().empty() || one.is_like(other); });
   }
   // Adds actions in a row, where at least half of the missions go on after them.
-  void add_way(std::vector<OptionCandidate>& candidates, const Option& way, double& steps, Sampler& random) {
-    std::vector<State> now = belief_.states();
-    std::vector<std::vector<StepReports>> reports(way.size(), std::vector<StepReports>(now.size()));
+  void add_way(List<OptionCandidate>& candidates, const Option& way, double& steps, Sampler& random) {
+    List<State> now = belief_.states();
+    List<List<StepReports>> reports(way.size(), List<StepReports>(now.size()));
     const auto goes_on = [&](std::size_t k) { return Model::ending(now[k]) == Ending::running; };
     double earned = 0;
     double discount = 1;
@@ -122,7 +123,7 @@ class OptionMoves {
     double share = 0;
     for (std::size_t k = 0; k < now.size(); ++k) share += goes_on(k) ? belief_.weights()[k] : 0;
     if (share < 0.5) return;
-    const auto last = share < 1 - 1e-9 ? RepeatedObservation{std::vector<StepReports>{}} : RepeatedObservation::at_last(reports);
+    const auto last = share < 1 - 1e-9 ? RepeatedObservation{List<StepReports>{}} : RepeatedObservation::at_last(reports);
     if (!last.is_listed(1)) steps -= way.size() * OptionTests<Model>::steps_of_weighing(now.size());
     const auto told = regret_.after(last, 1, belief_.weights(), steps, random, [&](std::size_t k, StateWeights& weights) {
       for (std::size_t i = 0; i < now.size(); ++i) weights[i] *= goes_on(i) ? 1 : 0;

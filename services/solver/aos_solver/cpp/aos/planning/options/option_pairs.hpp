@@ -5,6 +5,7 @@
 // move is worth more than that move, by as much as the order brings. What tells the same before and after the move may wait.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/options/decision_clock.hpp"
@@ -26,8 +27,8 @@ class OptionPairs {
       : belief_(belief), regret_(regret), tests_(tests), clock_(clock) {}
 
   // Raises the best tests among the first candidates that come before the best of the moves. `steps` is counted down.
-  void add_to(std::vector<OptionCandidate>& candidates, std::size_t observing, double& steps, Sampler& random) {
-    std::vector<OptionCandidate*> tests;
+  void add_to(List<OptionCandidate>& candidates, std::size_t observing, double& steps, Sampler& random) {
+    List<OptionCandidate*> tests;
     const OptionCandidate* move = nullptr;
     for (std::size_t c = 0; c < observing; ++c) {
       if (!tests_.is_move(candidates[c].action)) tests.push_back(&candidates[c]);
@@ -54,7 +55,7 @@ class OptionPairs {
 
   // What is told: by steps that are taken once, or by one that is taken several times.
   struct Telling {
-    std::vector<std::vector<StepReports>> reports;  // [step][state]
+    List<List<StepReports>> reports;  // [step][state]
     int times;
 
     RepeatedObservation listed() const { return RepeatedObservation::at_last(reports); }
@@ -90,8 +91,8 @@ class OptionPairs {
   }
 
   // By state: what a test may report after a move.
-  std::vector<StepReports> reports_after(const Option& way, int test, double& steps, Sampler& random) {
-    std::vector<StepReports> reports(belief_.size());
+  List<StepReports> reports_after(const Option& way, int test, double& steps, Sampler& random) {
+    List<StepReports> reports(belief_.size());
     for (std::size_t k = 0; k < belief_.size(); ++k) {
       State state = belief_.states()[k];
       taken_option<Model>(way, state, random, nullptr);

@@ -11,6 +11,7 @@
 //   move, and observe on the way or where it leads.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
@@ -79,7 +80,7 @@ class OptionPolicy {
     double left = (1 - kept) * affordable_ - taken_;
     clock_.end_at(of_all - kept);
     values_.begin(belief_, horizon, tried_options + tried_moves_.size(), left, random);
-    const std::vector<std::size_t> likely = likely_options(barred);
+    const List<std::size_t> likely = likely_options(barred);
     regret_.watch(likely);
     if (regret_.now() > matters * std::abs(regret_.value_seen())) {
       if (switches::twins && !library_.counts() && changes_.leaves_tests()) twins_.find(belief, of_twins * left, left, random);
@@ -178,20 +179,20 @@ class OptionPolicy {
       if (changes_.is_move(action) && !barred.contains(action)) tried_moves_.push_back(action);
     }
     are_for_views_ = tried_moves_.size() > OptionMoves<Model>::few;
-    if (are_for_views_) std::erase_if(tried_moves_, [this](int move) { return library_.earns_at_once(move); });
+    if (are_for_views_) erase_if(tried_moves_, [this](int move) { return library_.earns_at_once(move); });
     if (tried_moves_.size() > OptionMoves<Model>::few) tried_moves_.clear();
   }
 
   // The options with the highest income by the belief.
-  std::vector<std::size_t> likely_options(const BarredActions& barred) const {
-    std::vector<std::pair<double, std::size_t>> incomes;
+  List<std::size_t> likely_options(const BarredActions& barred) const {
+    List<std::pair<double, std::size_t>> incomes;
     for (std::size_t o = 0; o < gains_.size(); ++o) {
       const Option& option = library_.options()[o];
       if (barred.contains(option.front())) continue;
       incomes.emplace_back(income<Model>(gains_.earned(o, belief_.weights()), option.size()), o);
     }
     sort_stably(incomes, [](const auto& one, const auto& other) { return one.first > other.first; });
-    std::vector<std::size_t> options;
+    List<std::size_t> options;
     for (std::size_t i = 0; i < std::min(tried_options, incomes.size()); ++i) options.push_back(incomes[i].second);
     return options;
   }
@@ -201,7 +202,7 @@ class OptionPolicy {
   // there counts in full.
   double gained_after(std::size_t option, std::size_t likely, std::size_t observing, double& left, Sampler& random) {
     const double blind = regret_.value_seen() - regret_.now();
-    std::vector<std::pair<double, const OptionCandidate*>> gains;
+    List<std::pair<double, const OptionCandidate*>> gains;
     for (std::size_t c = 0; c < observing; ++c) {
       const OptionCandidate& candidate = candidates_[c];
       const double gain = candidate.value - candidate.discount * (blind + candidate.avoided[likely]);
@@ -229,15 +230,15 @@ class OptionPolicy {
   }
 
   // Notes the option that is the best candidate so far, if one is.
-  void note_way(const std::vector<std::size_t>& likely, std::size_t observing) {
+  void note_way(const List<std::size_t>& likely, std::size_t observing) {
     const auto best = std::ranges::max_element(candidates_, {}, &OptionCandidate::value);
     const std::size_t place = best - candidates_.begin();
     taken_way_ = place >= observing && place < candidates_.size() ? library_.options()[likely[place - observing]] : Option{};
   }
 
-  void add_observations(const std::vector<std::size_t>& likely, const BarredActions& barred, double& left, Sampler& random) {
+  void add_observations(const List<std::size_t>& likely, const BarredActions& barred, double& left, Sampler& random) {
     tests_.observe_all(barred, left, random);
-    const std::vector<View> views = library_.counts() ? priced_views(barred, left, random) : std::vector<View>{};
+    const List<View> views = library_.counts() ? priced_views(barred, left, random) : List<View>{};
     tests_.add_to(candidates_, left, random);
     if (twins_.are_known()) regret_.set_price(std::numeric_limits<double>::infinity(), true);
     moves_.add_to(candidates_, tried_moves_, left, random);
@@ -254,8 +255,8 @@ class OptionPolicy {
   }
 
   // The moves with what can be observed after them. The state can be found out at the price of a nat where that is cheapest.
-  std::vector<View> priced_views(const BarredActions& barred, double& left, Sampler& random) {
-    std::vector<View> views;
+  List<View> priced_views(const BarredActions& barred, double& left, Sampler& random) {
+    List<View> views;
     double price = tests_.price_of_nat(regret_.value_seen());
     for (const int move : tried_moves_) {
       if (left <= 0 || clock_.is_over()) break;
@@ -268,10 +269,10 @@ class OptionPolicy {
   }
 
   // Weighs detours and options by what they return if the robot waits for ever after them. Where to wait costs nothing, all else counts, too.
-  void take_detours(const std::vector<std::size_t>& likely, int horizon, const BarredActions& barred, double& left, Sampler& random) {
+  void take_detours(const List<std::size_t>& likely, int horizon, const BarredActions& barred, double& left, Sampler& random) {
     const double waiting = std::min(plain_plan(horizon, barred, random).returned, 0.0);
     left -= of_plain * affordable_;
-    std::vector<OptionCandidate> found = detours_.find(tried_moves_, waiting, barred, left, random);
+    List<OptionCandidate> found = detours_.find(tried_moves_, waiting, barred, left, random);
     if (found.empty()) return;
     if (waiting < 0) candidates_.clear();
     candidates_.insert(candidates_.begin(), found.begin(), found.end());
@@ -327,9 +328,9 @@ class OptionPolicy {
   bool was_idle_ = true;  // at the last decision; steps are kept for detours then
   OptionPairs<Model> pairs_{belief_, regret_, tests_, clock_};
   Option taken_way_;
-  std::vector<int> tried_moves_;
+  List<int> tried_moves_;
   bool are_for_views_ = false;
-  std::vector<OptionCandidate> candidates_;
+  List<OptionCandidate> candidates_;
   Estimates estimates_;
   const char* reason_ = "";
   double least_ = 0;

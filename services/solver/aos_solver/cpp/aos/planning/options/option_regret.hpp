@@ -2,6 +2,7 @@
 // lost where it is not, which is the regret of not knowing it.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/options/option_gains.hpp"
@@ -17,10 +18,10 @@ struct OptionCandidate {
   double value;
   double discount;  // of what comes after it
   const char* reason;
-  std::vector<double> avoided{};  // of each likely option: what is not lost by it, since the observation tells of it
-  std::vector<int> way{};         // by which it observes
+  List<double> avoided{};  // of each likely option: what is not lost by it, since the observation tells of it
+  List<int> way{};         // by which it observes
   double spared = 0;              // of the regret, by what is observed
-  std::vector<std::vector<StepReports>> reports{};  // of a move that goes on for certain: [step][state]
+  List<List<StepReports>> reports{};  // of a move that goes on for certain: [step][state]
 };
 
 template <class Model>
@@ -30,7 +31,7 @@ class OptionRegret {
 
   struct Told {
     double regret = 0;
-    std::vector<double> avoided{};  // see OptionCandidate
+    List<double> avoided{};  // see OptionCandidate
   };
 
   OptionRegret(const SampledBelief<Model>& belief, const OptionGains<Model>& gains) : belief_(belief), gains_(gains) {}
@@ -56,9 +57,9 @@ class OptionRegret {
     regret_ = after(belief_.weights());
   }
   // By state: the option that is best there, where no other one follows it.
-  const std::vector<std::size_t>& only_ways() const { return only_ways_; }
+  const List<std::size_t>& only_ways() const { return only_ways_; }
   // The options that may be taken next.
-  void watch(std::vector<std::size_t> likely) { likely_ = std::move(likely); }
+  void watch(List<std::size_t> likely) { likely_ = std::move(likely); }
   double value_seen(std::size_t state) const { return seen_[state]; }
   double value_seen() const { return value_seen_; }
   double value_seen(const StateWeights& weights) const { return std::inner_product(weights.begin(), weights.end(), seen_.begin(), 0.0); }
@@ -113,9 +114,9 @@ class OptionRegret {
   }
   const SampledBelief<Model>& belief_;
   const OptionGains<Model>& gains_;
-  std::vector<std::size_t> likely_;
-  std::vector<double> seen_;  // what the states are worth if they are seen
-  std::vector<std::size_t> only_ways_;
+  List<std::size_t> likely_;
+  List<double> seen_;  // what the states are worth if they are seen
+  List<std::size_t> only_ways_;
   double value_seen_ = 0;
   double regret_ = 0;
   double price_ = std::numeric_limits<double>::infinity();  // of a nat

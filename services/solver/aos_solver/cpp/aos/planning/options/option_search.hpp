@@ -9,6 +9,7 @@
 // first, and what is new is so among states in which as many conditions hold (best-first width search: Lipovetzky and Geffner, 2017).
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/draws/random.hpp"
@@ -21,10 +22,10 @@
 namespace aos {
 
 // A way of acting: actions one after the other, whatever is observed.
-using Option = std::vector<int>;
+using Option = List<int>;
 
 // Adds an option, and what is left of it after its first actions, as far as they are new: at most `most` of it, and up to `limit` in all.
-inline void add_with_rests(std::vector<Option>& options, const Option& option, std::size_t most, std::size_t limit) {
+inline void add_with_rests(List<Option>& options, const Option& option, std::size_t most, std::size_t limit) {
   for (std::size_t first = 0; first < std::min(most, option.size()) && options.size() < limit; ++first) {
     Option rest(option.begin() + first, option.end());
     if (std::ranges::find(options, rest) == options.end()) options.push_back(std::move(rest));
@@ -99,7 +100,7 @@ struct WayNode {
 
 // The actions from the start, which is node 0, to a node, and one more.
 template <class State>
-Option way_through(const std::vector<WayNode<State>>& nodes, std::uint32_t node, int action) {
+Option way_through(const List<WayNode<State>>& nodes, std::uint32_t node, int action) {
   Option way{action};
   for (; node != 0; node = nodes[node].before) way.push_back(nodes[node].action);
   std::ranges::reverse(way);
@@ -116,14 +117,14 @@ class OptionSearch {
       : cells_(cells), clock_(clock), retries_(retries), counts_(counts) {}
 
   // The ways from a state, the best first. `steps` is counted down.
-  std::vector<Option> from(const State& state, double& steps, Sampler& random) {
-    std::vector<Option> found = counts_ ? options_of(confirmed(state, found_by_conditions(state, steps, random), steps, random))
+  List<Option> from(const State& state, double& steps, Sampler& random) {
+    List<Option> found = counts_ ? options_of(confirmed(state, found_by_conditions(state, steps, random), steps, random))
                                         : narrow(state, steps, random);
     if (found.empty()) found = searched(state, 2, steps, random);
     return found;
   }
   // The same at width 1 only.
-  std::vector<Option> narrow(const State& state, double& steps, Sampler& random) { return searched(state, 1, steps, random); }
+  List<Option> narrow(const State& state, double& steps, Sampler& random) { return searched(state, 1, steps, random); }
 
  private:
   static constexpr double max_steps = 20'000;  // of the model, at each width
@@ -151,23 +152,23 @@ class OptionSearch {
   static constexpr auto has_more_income = [](const auto& one, const auto& other) { return one.income > other.income; };
 
   // The shortest ways are found first. Where they have needed luck, longer ones are tried, too.
-  std::vector<Option> searched(const State& start, int width, double& steps, Sampler& random) {
-    std::vector<Way> ways = confirmed(start, found_within(start, width, 0, steps, random), steps, random);
+  List<Option> searched(const State& start, int width, double& steps, Sampler& random) {
+    List<Way> ways = confirmed(start, found_within(start, width, 0, steps, random), steps, random);
     if (!found_.empty() && (ways.empty() || ways.front().earned < needs_luck * ways.front().once)) {
-      const std::vector<Way> longer = confirmed(start, found_within(start, width, longer_by, steps, random), steps, random);
+      const List<Way> longer = confirmed(start, found_within(start, width, longer_by, steps, random), steps, random);
       ways.insert(ways.end(), longer.begin(), longer.end());
       sort_stably(ways, has_more_income);
     }
     return options_of(ways);
   }
-  static std::vector<Option> options_of(const std::vector<Way>& ways) {
-    std::vector<Option> options;
+  static List<Option> options_of(const List<Way>& ways) {
+    List<Option> options;
     for (const Way& way : ways) options.push_back(way.option);
     return options;
   }
 
   // The ways that are at most `longer` steps longer than the shortest one.
-  const std::vector<Found>& found_within(const State& start, int width, std::uint32_t longer, double& steps, Sampler& random) {
+  const List<Found>& found_within(const State& start, int width, std::uint32_t longer, double& steps, Sampler& random) {
     double limit = max_steps;
     begin(start);
     seen_.clear();
@@ -195,12 +196,12 @@ class OptionSearch {
 
   // The ways that are found first if states in which more conditions hold come first, and of these those with a new value before those with
   // a new pair of values.
-  const std::vector<Found>& found_by_conditions(const State& start, double& steps, Sampler& random) {
+  const List<Found>& found_by_conditions(const State& start, double& steps, Sampler& random) {
     double limit = max_steps;
     begin(start);
     std::map<int, SeenBits> seen;  // by how many conditions hold
     std::priority_queue<std::tuple<int, int, std::int64_t>> open;  // conditions that hold, -width, -node
-    std::vector<int> met{Model::conditions_met(start)};
+    List<int> met{Model::conditions_met(start)};
     for (const int width : {1, 2}) note_all(start, seen[met.front()], width);
     open.emplace(met.front(), 0, 0);
     int rounds = 1;
@@ -250,7 +251,7 @@ class OptionSearch {
     return earns;
   }
 
-  const std::vector<Found>& best_found() {
+  const List<Found>& best_found() {
     sort_stably(found_, has_more_income);
     // Those that are no longer among the first may still earn most.
     if (found_.size() > max_found) {
@@ -261,8 +262,8 @@ class OptionSearch {
   }
 
   // The ways that also earn something under other luck, those with the highest income first.
-  std::vector<Way> confirmed(const State& start, const std::vector<Found>& found, double& steps, Sampler& random) const {
-    std::vector<Way> ways;
+  List<Way> confirmed(const State& start, const List<Found>& found, double& steps, Sampler& random) const {
+    List<Way> ways;
     for (const Found& last : found) {
       Way way{way_through(nodes_, last.node, last.action), 0, last.earned, 0};
       for (int i = 0; i < tries; ++i) {
@@ -302,11 +303,11 @@ class OptionSearch {
   const DecisionClock& clock_;
   const RunningDown<Model>* retries_;
   bool counts_;
-  std::vector<WayNode<State>> nodes_;
-  std::vector<Found> found_;
+  List<WayNode<State>> nodes_;
+  List<Found> found_;
   SeenCells seen_;
-  std::vector<std::uint64_t> cells_before_;
-  std::vector<std::uint64_t> cells_after_;
+  List<std::uint64_t> cells_before_;
+  List<std::uint64_t> cells_after_;
 };
 
 }

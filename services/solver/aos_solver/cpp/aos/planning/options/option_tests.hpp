@@ -1,6 +1,7 @@
 // What can be observed where the robot is: actions that change nothing, and what they tell of the state.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -79,17 +80,17 @@ class OptionTests {
     return price;
   }
   // The actions that change the state, those that are barred left out.
-  const std::vector<int>& moves() const { return moves_; }
+  const List<int>& moves() const { return moves_; }
   bool is_move(int action) const { return changes_.is_move(action); }
   // By state: what an action that is no move may report.
-  const std::vector<StepReports>& reports_of(int action) const { return reports_[action]; }
+  const List<StepReports>& reports_of(int action) const { return reports_[action]; }
   double information_of(int action) const { return informations_[action]; }
 
   // Adds the tests of each skill that tell most, made once or several times in a row, the latter while there are steps. The regret
   // that is left has a price after those that tell of nothing but the best option.
-  void add_to(std::vector<OptionCandidate>& candidates, double& steps, Sampler& random) {
+  void add_to(List<OptionCandidate>& candidates, double& steps, Sampler& random) {
     const double price = twins_.are_known() ? price_of_nat(regret_.value_seen(), true) : std::numeric_limits<double>::infinity();
-    const std::vector<Test> tests = most_telling();
+    const List<Test> tests = most_telling();
     for (int repeats = 1; repeats <= most_repeats; repeats *= 2) {
       for (const Test& test : tests) {
         if (repeats > 1 && (steps <= 0 || clock_.is_over())) continue;
@@ -109,17 +110,17 @@ class OptionTests {
     bool is_priced;  // since it tells of nothing but the best option
   };
 
-  std::vector<Test> most_telling() const {
-    std::vector<Test> tests;
-    std::vector<std::size_t> tried(Model::skill_count);
+  List<Test> most_telling() const {
+    List<Test> tests;
+    List<std::size_t> tried(Model::skill_count);
     for (const Test& test : tests_) {
       if (tried[Model::skill_of(test.action)]++ < tried_tests) tests.push_back(test);
     }
     return tests;
   }
 
-  void add(std::vector<OptionCandidate>& candidates, const Test& test, int repeats, double& steps, Sampler& random) const {
-    const std::vector<StepReports>& reports = reports_[test.action];
+  void add(List<OptionCandidate>& candidates, const Test& test, int repeats, double& steps, Sampler& random) const {
+    const List<StepReports>& reports = reports_[test.action];
     double paid = 0;
     double discount = 1;
     for (int i = 0; i < repeats; ++i, discount *= Model::discount) paid += discount * test.reward;
@@ -129,7 +130,7 @@ class OptionTests {
       for (int i = 0; i < repeats; ++i) observe(reports, reports[k].drawn(random), weights);
     });
     candidates.push_back({test.action, paid + discount * (regret_.value_seen() - told.regret), discount, "what can be observed", told.avoided,
-                          std::vector<int>(static_cast<std::size_t>(repeats), test.action), regret_.now() - told.regret});
+                          List<int>(static_cast<std::size_t>(repeats), test.action), regret_.now() - told.regret});
   }
 
   // Takes an action from all states. Returns the mean reward.
@@ -148,10 +149,10 @@ class OptionTests {
   OptionTwins<Model>& twins_;
   DecisionClock& clock_;
   ReportedStep<Model> step_;
-  std::vector<std::vector<StepReports>> reports_;  // [action][state]
-  std::vector<double> informations_;               // by action
-  std::vector<Test> tests_;
-  std::vector<int> moves_;
+  List<List<StepReports>> reports_;  // [action][state]
+  List<double> informations_;               // by action
+  List<Test> tests_;
+  List<int> moves_;
   std::size_t first_ = 0;  // action that is observed
 };
 

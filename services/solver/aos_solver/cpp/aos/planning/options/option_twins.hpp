@@ -3,6 +3,7 @@
 // same option is best. A test that tells of options only reports the same from both.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -31,7 +32,7 @@ class OptionTwins {
   void find(const Belief<Model>& belief, double most_steps, double& steps, Sampler& random) {
     forget();
     if (std::ranges::count(regret_.only_ways(), OptionGains<Model>::none) > 0) return;
-    std::vector<State> others;
+    List<State> others;
     draw_evenly<Model>(belief.particles(), most_others, random, [&](const State& state) {
       if (Model::ending(state) == Ending::running) others.push_back(state);
     });
@@ -53,7 +54,7 @@ class OptionTwins {
   }
 
   // Whether a test tells of nothing but the best option: twins report the same. `reports` are by state.
-  bool tells_of_options(int action, const std::vector<StepReports>& reports, double& steps, Sampler& random) {
+  bool tells_of_options(int action, const List<StepReports>& reports, double& steps, Sampler& random) {
     StepReports there;
     return std::ranges::all_of(twins_, [&](const Twin& twin) {
       State state = twin.state;
@@ -82,7 +83,7 @@ class OptionTwins {
   const SampledBelief<Model>& sampled_;
   const OptionRegret<Model>& regret_;
   const OptionLibrary<Model>& library_;
-  std::vector<Twin> twins_;
+  List<Twin> twins_;
   ReportedStep<Model> step_;
 };
 

@@ -2,6 +2,7 @@
 // options of a belief count once each; here the same may be earned again and again.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/decision_clock.hpp"
@@ -43,10 +44,10 @@ class OptionValues {
 
   // How much more the next states are worth than those before, after so many actions, less its standard error: of many gains
   // that are as uncertain, the highest one is too high. Where there is no time to value them it is 0.
-  double gain_of(const std::vector<State>& next, std::size_t actions, double& steps, Sampler& random) const {
+  double gain_of(const List<State>& next, std::size_t actions, double& steps, Sampler& random) const {
     double gain = 0;
     double weights = 0;
-    std::vector<std::pair<double, double>> gains;  // weight and gain
+    List<std::pair<double, double>> gains;  // weight and gain
     for (const auto& [k, weight, before] : valued_) {
       if (Model::ending(next[k]) != Ending::running) continue;
       if (clock_.left_s() < one_s_) return 0;
@@ -115,7 +116,7 @@ class OptionValues {
   std::size_t horizon_ = 1;
   double value_steps_ = most_value_steps;
   double one_s_ = 0;
-  std::vector<Valued> valued_;
+  List<Valued> valued_;
 };
 
 }

@@ -4,6 +4,7 @@
 // need not say what changes by itself. An action changes a variable where its result is another one.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
@@ -32,7 +33,7 @@ class OwnChanges {
   using State = typename Model::State;
 
   // Takes each action once from each state. `steps` is counted down.
-  void measure(const std::vector<State>& states, const LeafCells<Model>& cells, double& steps, Sampler& random) {
+  void measure(const List<State>& states, const LeafCells<Model>& cells, double& steps, Sampler& random) {
     const std::size_t actions = Model::action_count();
     moves_.assign(actions, false);
     is_changed_.assign(cells.size(), false);
@@ -86,9 +87,9 @@ class OwnChanges {
   std::vector<bool> is_changed_;  // by variable
   std::vector<bool> is_worlds_;   // by variable
   // Of the state at hand:
-  std::vector<std::uint64_t> start_;
-  std::vector<std::uint64_t> after_;  // [action * variables + variable]
-  std::vector<std::uint64_t> ends_;   // by action
+  List<std::uint64_t> start_;
+  List<std::uint64_t> after_;  // [action * variables + variable]
+  List<std::uint64_t> ends_;   // by action
 };
 
 }

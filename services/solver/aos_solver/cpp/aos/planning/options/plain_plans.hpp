@@ -1,6 +1,7 @@
 // Plain plans: the same action again and again, as far as the mission goes on. To leave, to land or to wait is one of them.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/draws/random.hpp"
@@ -25,13 +26,13 @@ class PlainPlans {
   // The plan that returns most over `horizon` decisions (sequential halving). What the last one returns is found anew, since the
   // mean of the best of several is too high. It takes at most so many steps to choose.
   static PlainPlan best(const SampledBelief<Model>& belief, int horizon, const BarredActions& barred, double steps, Sampler& random) {
-    std::vector<int> actions;
+    List<int> actions;
     for (int action = 0; action < Model::action_count(); ++action) {
       if (!barred.contains(action)) actions.push_back(action);
     }
     if (actions.empty()) return {};
     const double of_round = steps / rounds;
-    std::vector<double> sums(Model::action_count());
+    List<double> sums(Model::action_count());
     for (std::size_t tries = first_tries; actions.size() > 1; tries *= kept_share) {
       const double affordable = of_round / (actions.size() * tries);
       const int length = std::clamp(static_cast<int>(affordable), 1, horizon);

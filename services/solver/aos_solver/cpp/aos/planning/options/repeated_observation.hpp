@@ -1,6 +1,7 @@
 // All that can be observed where the same is observed several times, if that is little.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
 #include "aos/planning/options/step_reports.hpp"
 
@@ -9,17 +10,17 @@ namespace aos {
 class RepeatedObservation {
  public:
   // `reports` are by state.
-  explicit RepeatedObservation(const std::vector<StepReports>& reports) {
+  explicit RepeatedObservation(const List<StepReports>& reports) {
     for (const Observation response : few_responses(reports)) {
-      std::vector<double>& likelihoods = likelihoods_.emplace_back();
+      List<double>& likelihoods = likelihoods_.emplace_back();
       for (const StepReports& report : reports) likelihoods.push_back(report.likelihood({response, {}}));
     }
   }
 
   // What is observed in a row of steps, [step][state], if it is observed at the last of them only; else none is listed.
-  static RepeatedObservation at_last(const std::vector<std::vector<StepReports>>& steps) {
+  static RepeatedObservation at_last(const List<List<StepReports>>& steps) {
     const bool is_at_last = std::all_of(steps.begin(), steps.end() - 1, [](const auto& step) { return RepeatedObservation{step}.tells_nothing(); });
-    return RepeatedObservation{is_at_last ? steps.back() : std::vector<StepReports>{}};
+    return RepeatedObservation{is_at_last ? steps.back() : List<StepReports>{}};
   }
 
   // Whether all combinations of so many observations can be gone through.
@@ -59,7 +60,7 @@ class RepeatedObservation {
     }
   }
 
-  std::vector<std::vector<double>> likelihoods_;  // [response][state]; empty if they are too many
+  List<List<double>> likelihoods_;  // [response][state]; empty if they are too many
 };
 
 }

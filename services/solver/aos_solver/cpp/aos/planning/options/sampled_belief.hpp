@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aos/base/function_ref.hpp"
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/random.hpp"
@@ -10,7 +11,7 @@
 
 namespace aos {
 
-using StateWeights = std::vector<double>;  // by state; they sum to 1
+using StateWeights = List<double>;  // by state; they sum to 1
 
 // Calls `use` with the numbers of so many states, drawn at even distances in the weights.
 inline void draw_states(const StateWeights& weights, int count, Sampler& random, FunctionRef<void(std::size_t)> use) {
@@ -24,7 +25,7 @@ inline void draw_states(const StateWeights& weights, int count, Sampler& random,
 }
 
 // Bayes' rule, given what a step from each state may report. Weights that an observation leaves nothing of stay.
-inline void observe(const std::vector<StepReports>& reports, const Seen& seen, StateWeights& weights) {
+inline void observe(const List<StepReports>& reports, const Seen& seen, StateWeights& weights) {
   StateWeights after = weights;
   double sum = 0;
   for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -36,9 +37,9 @@ inline void observe(const std::vector<StepReports>& reports, const Seen& seen, S
 }
 
 // The mutual information of the state and what is observed, in nats; estimated from drawn observations where not all can be listed.
-inline double information(const StateWeights& weights, const std::vector<StepReports>& reports, int draws, Sampler& random) {
+inline double information(const StateWeights& weights, const List<StepReports>& reports, int draws, Sampler& random) {
   const auto told = [&](const Seen& seen, std::size_t k) { return weights[k] > 0 ? reports[k].likelihood(seen) : 0; };
-  const std::vector<Observation> responses = few_responses(reports);
+  const List<Observation> responses = few_responses(reports);
   double sum = 0;
   for (const Observation response : responses) {
     double all = 0;
@@ -86,7 +87,7 @@ class SampledBelief {
   // many particles a part is drawn: to compare 100,000 takes half of a budget of 0.1 s.
   void draw_alike(const Belief<Model>& belief, std::size_t count, FunctionRef<std::uint64_t(const State&)> key_of, Sampler& random) {
     std::unordered_map<std::uint64_t, std::size_t> known;
-    std::vector<State> alike;
+    List<State> alike;
     StateWeights weights;
     const auto take = [&](const State& state, double weight) {
       if (Model::ending(state) != Ending::running) return;
@@ -112,13 +113,13 @@ class SampledBelief {
   }
 
   std::size_t size() const { return states_.size(); }
-  const std::vector<State>& states() const { return states_; }
+  const List<State>& states() const { return states_; }
   const StateWeights& weights() const { return weights_; }
 
  private:
   static constexpr std::size_t most_compared = 8192;  // particles
 
-  std::vector<State> states_;
+  List<State> states_;
   StateWeights weights_;
 };
 

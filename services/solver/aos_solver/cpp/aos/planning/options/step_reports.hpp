@@ -3,6 +3,7 @@
 // random has the reports of one of its next states.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/enumerator.hpp"
@@ -16,7 +17,7 @@ namespace aos {
 // Keeps the distributions that a step reports from.
 class KeptDistributions final : public NumberSink {
  public:
-  using Kept = std::vector<std::pair<NumberKey, DescribedDistribution>>;
+  using Kept = List<std::pair<NumberKey, DescribedDistribution>>;
   void begin() override { kept_.clear(); }
   void take(NumberKey key, const Distribution& distribution) override { kept_.emplace_back(key, distribution.described()); }
   const Kept& kept() const { return kept_; }
@@ -28,7 +29,7 @@ class KeptDistributions final : public NumberSink {
 // What was observed at a step.
 struct Seen {
   Observation response = default_observation;
-  std::vector<double> numbers;  // in the order in which they were reported
+  List<double> numbers;  // in the order in which they were reported
 };
 
 class StepReports {
@@ -46,7 +47,7 @@ class StepReports {
     if (known != branches_.end()) known->probability += probability;
     else branches_.push_back({probability, response, numbers});
   }
-  const std::vector<Branch>& branches() const { return branches_; }
+  const List<Branch>& branches() const { return branches_; }
 
   // Whether the same is reported with the same probabilities.
   bool is_like(const StepReports& other) const {
@@ -78,12 +79,12 @@ class StepReports {
   }
 
  private:
-  std::vector<Branch> branches_;
+  List<Branch> branches_;
 };
 
 // All responses that may be observed; none if they are more than 8, or numbers are reported.
-inline std::vector<Observation> few_responses(const std::vector<StepReports>& reports) {
-  std::vector<Observation> responses;
+inline List<Observation> few_responses(const List<StepReports>& reports) {
+  List<Observation> responses;
   for (const StepReports& report : reports) {
     for (const auto& branch : report.branches()) {
       if (std::ranges::find(responses, branch.response) == responses.end()) responses.push_back(branch.response);

@@ -2,6 +2,7 @@
 // returns, and is polynomial and not logarithmic, since values drift while the tree below them grows (Shah, Xie and Xu, 2020).
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
@@ -66,7 +67,7 @@ class RootSpread {
 // If rollouts value new histories, the actions that a rollout would take get most of the exploration. The
 // other actions must not use up the few visits of a history. POMCP's paper begins with visits and values of
 // actions, which the document's author would have to know.
-inline void share_exploration(ActionNode* actions, const std::vector<double>& rollout_odds) {
+inline void share_exploration(ActionNode* actions, const List<double>& rollout_odds) {
   const auto count = static_cast<double>(rollout_odds.size());
   for (std::size_t a = 0; a < rollout_odds.size(); ++a) {
     actions[a].share = even_share + (1 - even_share) * rollout_odds[a] * count;

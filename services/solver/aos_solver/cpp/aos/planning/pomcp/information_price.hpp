@@ -7,6 +7,7 @@
 // what these still lose for each nat: it looks further ahead, and pays less.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
@@ -47,7 +48,7 @@ class InformationPrice {
 
  private:
   using State = typename Model::State;
-  using Cloud = std::vector<Particle<Model>>;
+  using Cloud = List<Particle<Model>>;
 
   double best(const Belief<Model>& belief, double entropy) {
     double promised = 0;

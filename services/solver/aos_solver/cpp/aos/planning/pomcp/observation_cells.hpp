@@ -6,6 +6,7 @@
 
 #include <unordered_map>
 
+#include "aos/base/list.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -28,7 +29,7 @@ class ObservationCells {
       numbers.push_back({key, distribution.draw(random_), distribution.spread()});
     }
 
-    std::vector<Number> numbers;
+    List<Number> numbers;
 
    private:
     Sampler& random_;
@@ -64,11 +65,11 @@ class ObservationCells {
  private:
   struct Cell {
     Observation name;
-    std::vector<Number> numbers;
+    List<Number> numbers;
   };
   struct Place {
     std::uint64_t visits = 0;
-    std::vector<Cell> cells;
+    List<Cell> cells;
   };
 
   // Infinite if other numbers were reported. From `limit` on the distance is not exact.

@@ -3,6 +3,7 @@
 // the entropy of its belief, but for a constant. What is observed is counted in the tree; noise is found from all outcomes.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
@@ -19,10 +20,10 @@ class ObservationOddsOfStep {
     else odds_.emplace_back(seen, probability);
   }
   double entropy() const { return entropy_of(odds_, &std::pair<Observation, double>::second); }
-  const std::vector<std::pair<Observation, double>>& all() const { return odds_; }
+  const List<std::pair<Observation, double>>& all() const { return odds_; }
 
  private:
-  std::vector<std::pair<Observation, double>> odds_;
+  List<std::pair<Observation, double>> odds_;
 };
 
 template <class Model>

@@ -4,6 +4,7 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/function_ref.hpp"
+#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
@@ -79,7 +80,7 @@ class Pomcp final : public TreePlanner<Model> {
     return result;
   }
 
-  std::vector<std::uint64_t> simulations_by_thread() const override { return threads_.simulations(); }
+  List<std::uint64_t> simulations_by_thread() const override { return threads_.simulations(); }
   // How many simulations went through the root.
   std::uint64_t known_simulations() const override {
     std::uint64_t sum = 0;
@@ -253,7 +254,7 @@ class Pomcp final : public TreePlanner<Model> {
   ValueSource source_ = ValueSource::none;
   const StateValues<Model>* state_values_ = nullptr;  // null if nothing is known of what states are worth
   bool has_table_ = false;  // of steps
-  std::vector<double> prior_;
+  List<double> prior_;
   double mdp_value_ = 0;
   double price_of_nat_ = 0;  // of information
   double rolled_out_ = 0;  // what rollouts return from the belief, where they value new histories

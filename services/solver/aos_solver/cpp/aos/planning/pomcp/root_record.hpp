@@ -2,6 +2,7 @@
 // budget in time ends once the choice cannot change.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
 
@@ -45,7 +46,7 @@ class RootRecord {
     double n = 0;
   };
 
-  std::vector<Rewards> rewards_;
+  List<Rewards> rewards_;
   double lowest_ = std::numeric_limits<double>::infinity();
   double highest_ = -std::numeric_limits<double>::infinity();
 };

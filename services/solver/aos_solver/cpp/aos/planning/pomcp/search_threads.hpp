@@ -7,6 +7,7 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/function_ref.hpp"
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
@@ -27,18 +28,18 @@ class SearchThreads {
     trees_.clear();
     for (std::size_t i = 0; i < count; ++i) trees_.push_back(std::make_unique<Tree>(max_search_bytes / count));
   }
-  const std::vector<std::unique_ptr<Tree>>& trees() const { return trees_; }
+  const List<std::unique_ptr<Tree>>& trees() const { return trees_; }
   // Of the last search, by thread.
-  const std::vector<std::uint64_t>& simulations() const { return simulations_; }
+  const List<std::uint64_t>& simulations() const { return simulations_; }
 
   // Simulates from `start_state(random)`, a state of simulated_state.hpp, until the budget is spent or
   // `is_over()`. Returns the number of simulations. `first` is that of TreeSearch. A budget in simulations is counted by the work
   // in the tree, with `each` operations to a simulation, or by descents if there are none, since each of these has a rollout.
   std::uint64_t simulate(const auto& start_state, Budget budget, PlanningClock::time_point start, Sampler& random,
                          int first, FunctionRef<bool()> is_over, Operations each) {
-    std::vector<Work> works(trees_.size());
+    List<Work> works(trees_.size());
     {
-      std::vector<std::jthread> others;
+      List<std::jthread> others;
       for (std::size_t i = 1; i < trees_.size(); ++i) {
         const std::uint64_t seed = random.bits();
         others.emplace_back([&, i, seed] {
@@ -109,8 +110,8 @@ class SearchThreads {
     return tree.is_decided(simulations * (seconds / spent - 1));
   }
 
-  std::vector<std::unique_ptr<Tree>> trees_;
-  std::vector<std::uint64_t> simulations_;
+  List<std::unique_ptr<Tree>> trees_;
+  List<std::uint64_t> simulations_;
 };
 
 }

@@ -5,6 +5,7 @@
 // memory is used up, the tree stops growing and goes on learning. Letters: n visits, q value of an action, v value of a history.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
 #include "aos/base/room.hpp"
@@ -165,11 +166,11 @@ class SearchTree {
   }
 
   std::uint32_t action_count_;
-  std::vector<HistoryNode> histories_;
-  std::vector<ActionNode> actions_;
-  std::vector<Told> told_;  // by action
+  List<HistoryNode> histories_;
+  List<ActionNode> actions_;
+  List<Told> told_;  // by action
   NumberIndex index_;
-  std::vector<std::uint32_t> sources_;  // while copying: the original of each history
+  List<std::uint32_t> sources_;  // while copying: the original of each history
 };
 
 }

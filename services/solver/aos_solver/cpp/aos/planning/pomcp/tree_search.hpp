@@ -5,6 +5,7 @@
 // the reasons for departures from the paper. Letters: n visits, q value of an action, v value of a history.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"
@@ -34,7 +35,7 @@ class TreeSearch {
   // known before the search. With `first_state_tells`, the first state of a history tells what its actions are worth.
   // The `barred` actions are not tried at the root. A step of the model costs `step_cost`, and
   // what an action is worth in a state `worth_cost`. At a `price` for each nat, actions count by what they tell, too.
-  void begin(int horizon, const std::vector<double>& prior, bool first_state_tells, const BarredActions& barred,
+  void begin(int horizon, const List<double>& prior, bool first_state_tells, const BarredActions& barred,
              Operations step_cost, Operations worth_cost, double price) {
     step_cost_ = step_cost + (reports_numbers_ ? per_numbers : 0);
     worth_cost_ = worth_cost;
@@ -331,13 +332,13 @@ class TreeSearch {
   Operations work_ = 0;
   double price_ = 0;  // of a nat
   BarredActions barred_;
-  std::vector<double> prior_;
+  List<double> prior_;
   ExpectedRewards<Model> rewards_;
   ObservationDoubts<Model> doubts_;
   RootRecord record_;
   RootSpread spread_;
-  std::vector<Visit> visits_;  // the first ones are of the simulation that runs
-  std::vector<double> odds_;
+  List<Visit> visits_;  // the first ones are of the simulation that runs
+  List<double> odds_;
 };
 
 }

@@ -4,6 +4,7 @@
 // less of that is luck, which hides what an action does. No best successor makes returns of a policy too high.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/stable_order.hpp"
@@ -39,10 +40,10 @@ class RestValues {
   bool learn(BasePolicy base, const Belief<Model>& belief, int horizon, Sampler& random) {
     horizon_ = horizon;
     find_action(belief, random);
-    const std::vector<State> examples = walked(belief, random);
+    const List<State> examples = walked(belief, random);
     if (examples.empty() || !cells_.find(examples)) return false;
-    std::vector<std::uint16_t> rows;
-    std::vector<double> targets;
+    List<std::uint16_t> rows;
+    List<double> targets;
     for (const State& example : examples) {
       tell(targets.size(), examples.size());
       cells_.add_row(example, rows);
@@ -91,10 +92,10 @@ class RestValues {
 
   // Sequential halving: all actions are tried under the same luck, the better quarter of them four times as often, and so on.
   void find_action(const Belief<Model>& belief, Sampler& random) {
-    std::vector<int> actions(Model::action_count());
+    List<int> actions(Model::action_count());
     std::iota(actions.begin(), actions.end(), 0);
     for (int tries = first_tries; actions.size() > 1; tries *= static_cast<int>(kept_share)) {
-      std::vector<double> sums(Model::action_count(), 0);
+      List<double> sums(Model::action_count(), 0);
       for (int i = 0; i < tries; ++i) {
         const State& state = belief.sample(random);
         if (Model::ending(state) != Ending::running) continue;
@@ -107,7 +108,7 @@ class RestValues {
     action_ = actions.front();
   }
 
-  void fit(const std::vector<std::uint16_t>& rows, const std::vector<double>& targets) {
+  void fit(const List<std::uint16_t>& rows, const List<double>& targets) {
     CellTables tables{cells_.variables()};
     for (std::size_t i = 0; i < sweeps; ++i) {
       progress::tell("learning what states are worth", i, sweeps);
@@ -135,9 +136,9 @@ class RestValues {
   }
 
   // Takes a state from each random walk.
-  std::vector<State> walked(const Belief<Model>& belief, Sampler& random) {
+  List<State> walked(const Belief<Model>& belief, Sampler& random) {
     const std::size_t wanted = std::clamp(max_steps / static_cast<std::size_t>(std::max(horizon_, 1)), fewest_examples, most_examples);
-    std::vector<State> examples;
+    List<State> examples;
     for (std::size_t walks = 0; examples.size() < wanted && walks < 4 * wanted; ++walks) {
       State state = belief.sample(random);
       const int steps = random.below(horizon_);
@@ -151,7 +152,7 @@ class RestValues {
   int action_ = 0;
   StateCells<Model> cells_;
   CellTables tables_;
-  std::vector<std::uint32_t> used_;
+  List<std::uint32_t> used_;
   RandomWalk<Model> walk_;
 };
 

@@ -2,6 +2,7 @@
 // is worth doing again and again counts by its income: a way that saves more and takes longer may save less in the end.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/statistics.hpp"
@@ -51,7 +52,7 @@ class SavingIndex final : public StateValues<Model> {
   }
 
   // Values the ways from all states, by their weights.
-  void measure(const std::vector<State>& states, const StateWeights& weights, double& steps, Sampler& random) {
+  void measure(const List<State>& states, const StateWeights& weights, double& steps, Sampler& random) {
     incomes_.assign(ways_.size(), 0);
     for (std::size_t k = 0; k < states.size(); ++k) {
       const StepLuck luck{random};
@@ -67,11 +68,11 @@ class SavingIndex final : public StateValues<Model> {
   // Keeps the ways with the highest incomes that were measured, where they are many.
   void drop_worst() {
     if (ways_.size() <= kept_ways) return;
-    std::vector<std::size_t> order(ways_.size());
+    List<std::size_t> order(ways_.size());
     std::iota(order.begin(), order.end(), 0);
     incomes_.resize(ways_.size(), 0);
     sort_stably(order, [&](std::size_t one, std::size_t other) { return incomes_[one] > incomes_[other]; });
-    std::vector<Option> kept;
+    List<Option> kept;
     for (std::size_t i = 0; i < kept_ways; ++i) kept.push_back(std::move(ways_[order[i]]));
     ways_ = std::move(kept);
   }
@@ -92,7 +93,7 @@ class SavingIndex final : public StateValues<Model> {
   }
 
   const RestValues<Model>& values() const { return values_; }
-  const std::vector<Option>& ways() const { return ways_; }
+  const List<Option>& ways() const { return ways_; }
   double income_of(std::size_t way) const { return incomes_[way]; }
 
  private:
@@ -130,9 +131,9 @@ class SavingIndex final : public StateValues<Model> {
   }
 
   RestValues<Model> values_;
-  std::vector<Option> ways_;
-  std::vector<double> incomes_;  // by way, as they were measured
-  std::vector<std::pair<Option, int>> decided_;  // ways that decided in played missions, and how often, most often first
+  List<Option> ways_;
+  List<double> incomes_;  // by way, as they were measured
+  List<std::pair<Option, int>> decided_;  // ways that decided in played missions, and how often, most often first
 };
 
 }

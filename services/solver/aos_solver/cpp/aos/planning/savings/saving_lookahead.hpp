@@ -5,6 +5,7 @@
 // saves, and the other way round: the best way for a few drawn states is too good for these.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
@@ -20,7 +21,7 @@ class SavingLookahead {
  public:
   using State = typename Model::State;
 
-  SavingLookahead(const RestValues<Model>& values, const std::vector<Option>& ways) : values_(values), ways_(ways) {}
+  SavingLookahead(const RestValues<Model>& values, const List<Option>& ways) : values_(values), ways_(ways) {}
 
   // How many steps of the model an action takes, once begun.
   double steps_of_action() const {
@@ -101,15 +102,15 @@ class SavingLookahead {
   }
 
   const RestValues<Model>& values_;
-  const std::vector<Option>& ways_;
+  const List<Option>& ways_;
   const Option nothing_;  // to do after an action
   const SampledBelief<Model>* belief_ = nullptr;
-  std::vector<StepLuck> lucks_;       // by state
-  std::vector<Rest<Model>> rests_;    // by state
-  std::vector<double> incomes_;       // [state * (ways + 1) + way], of the action at hand
-  std::vector<Told> told_;
-  std::vector<Told> rare_;
-  std::vector<double> best_;
+  List<StepLuck> lucks_;       // by state
+  List<Rest<Model>> rests_;    // by state
+  List<double> incomes_;       // [state * (ways + 1) + way], of the action at hand
+  List<Told> told_;
+  List<Told> rare_;
+  List<double> best_;
 };
 
 }

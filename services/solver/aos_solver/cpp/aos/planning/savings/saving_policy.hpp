@@ -6,6 +6,7 @@
 // It knows nothing of what serves later only, such as a tank that is full, and chance does. Missions tell which one to go by.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
@@ -128,17 +129,17 @@ class SavingPolicy {
   }
 
   // The actions by the income of the best way that begins with each; those that begin none by what they tell.
-  std::vector<int> ordered_actions(double& steps, Sampler& random) {
+  List<int> ordered_actions(double& steps, Sampler& random) {
     const std::size_t actions = Model::action_count();
     constexpr double none = -std::numeric_limits<double>::infinity();
-    std::vector<double> incomes(actions, none);
+    List<double> incomes(actions, none);
     incomes[index_->values().action()] = 0;
     for (std::size_t i = 0; i < index_->ways().size(); ++i) {
       double& income = incomes[index_->ways()[i].front()];
       income = std::max(income, index_->income_of(i));
     }
-    std::vector<double> told(actions, 0);
-    std::vector<int> ordered(actions);
+    List<double> told(actions, 0);
+    List<int> ordered(actions);
     std::iota(ordered.begin(), ordered.end(), 0);
     for (std::size_t a = 0; a < actions; ++a) {
       if (incomes[a] == none) told[a] = told_by(a, steps, random);
@@ -179,7 +180,7 @@ class SavingPolicy {
   SampledBelief<Model> belief_;
   double taken_ = 0;  // steps of the model
   double resting_ = 0;
-  std::vector<Found> found_;
+  List<Found> found_;
   Estimates estimates_;
 };
 

@@ -5,6 +5,7 @@
 // new that the last action has brought about, and that the world does not do by itself (own_changes.hpp; iterated width: Lipovetzky and Geffner, 2012).
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -35,7 +36,7 @@ class Rest {
   double returned(std::size_t steps) const { return returned_[steps]; }
 
  private:
-  std::vector<double> returned_;  // by how many steps are taken before states are valued
+  List<double> returned_;  // by how many steps are taken before states are valued
 };
 
 // What is returned by a way and by the rests after it, and what the state is worth then. So much was earned in `taken` steps before.
@@ -68,8 +69,8 @@ class SavingSearch {
   SavingSearch(const LeafCells<Model>& cells, const RestValues<Model>& values) : cells_(cells), values_(values) {}
 
   // The ways from a state that save most in each step. `steps` is counted down.
-  std::vector<Option> from(const State& start, double& steps, Sampler& random) {
-    std::vector<Option> ways;
+  List<Option> from(const State& start, double& steps, Sampler& random) {
+    List<Option> ways;
     for (int width = 1; width <= 2 && steps > 0; ++width) {
       for (Option& way : confirmed(start, width, steps, random)) {
         if (std::ranges::find(ways, way) == ways.end()) ways.push_back(std::move(way));
@@ -133,9 +134,9 @@ class SavingSearch {
   }
 
   // The ways that also save something under other luck.
-  std::vector<Option> confirmed(const State& start, int width, double& steps, Sampler& random) {
+  List<Option> confirmed(const State& start, int width, double& steps, Sampler& random) {
     search(start, width, steps, StepLuck{random});
-    std::vector<Option> ways;
+    List<Option> ways;
     for (const Found& last : found_) {
       Option way = way_through(nodes_, last.node, last.action);
       double sum = 0;
@@ -166,15 +167,15 @@ class SavingSearch {
 
   const LeafCells<Model>& cells_;
   const RestValues<Model>& values_;
-  std::vector<WayNode<State>> nodes_;
-  std::vector<Found> found_;
+  List<WayNode<State>> nodes_;
+  List<Found> found_;
   SeenCells seen_;
   // Of the node at hand, by action:
-  std::vector<State> after_;
-  std::vector<Worth> worths_;
-  std::vector<std::uint64_t> cells_before_;
-  std::vector<std::uint64_t> cells_after_;  // [action * variables + variable]
-  std::vector<char> is_own_;                // [action * variables + variable]
+  List<State> after_;
+  List<Worth> worths_;
+  List<std::uint64_t> cells_before_;
+  List<std::uint64_t> cells_after_;  // [action * variables + variable]
+  List<char> is_own_;                // [action * variables + variable]
 };
 
 }

@@ -1,6 +1,7 @@
 // The places that moves lead to which tell nothing, the tests that can be made there, the ends, and the ways between.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -22,17 +23,17 @@ class SeekPlaces {
     double paid = 0;               // on average
   };
   struct Place {
-    std::vector<State> states;
-    std::vector<Move> moves{};  // by action
+    List<State> states;
+    List<Move> moves{};  // by action
   };
   struct Test {
     std::uint32_t place;
     int action;
     double reward;                    // on average, where it does not win
     std::size_t outcomes;
-    std::vector<double> odds{};       // [state * outcomes + outcome], later by class
-    std::vector<double> doubts{};     // by class: the entropy of what is observed
-    std::vector<double> own{};        // as `odds`, by state
+    List<double> odds{};       // [state * outcomes + outcome], later by class
+    List<double> doubts{};     // by class: the entropy of what is observed
+    List<double> own{};        // as `odds`, by state
   };
   struct End {
     std::uint32_t place;
@@ -45,7 +46,7 @@ class SeekPlaces {
     int by = -1;
     double paid = 0;
   };
-  using Ways = std::vector<Arrival>;  // by place
+  using Ways = List<Arrival>;  // by place
 
   // Finds places from the states of a belief on, breadth first, all states in step and under the same luck. Takes at most
   // half of the steps.
@@ -59,13 +60,13 @@ class SeekPlaces {
     const std::size_t actions = Model::action_count();
     places_.push_back({belief.states()});
     known.emplace(running_down.place_of(places_[0].states), 0);
-    std::vector<StepReports> reports(belief.size());
+    List<StepReports> reports(belief.size());
     const double least = steps / 2;
     for (std::uint32_t number = 0; number < places_.size() && steps > least; ++number) {
       places_[number].moves.resize(actions);
       for (std::size_t a = 0; a < actions; ++a) {
         if (barred.contains(a)) continue;
-        std::vector<State> next = places_[number].states;
+        List<State> next = places_[number].states;
         const Sampler luck{random.bits()};
         double reward = 0, running = 0, failing = 0;
         bool tells = false;
@@ -97,11 +98,11 @@ class SeekPlaces {
     for (Place& place : places_) place.moves.resize(actions);
   }
 
-  const std::vector<Place>& places() const { return places_; }
-  std::vector<Test>& tests() { return tests_; }
-  std::vector<End>& ends() { return ends_; }
+  const List<Place>& places() const { return places_; }
+  List<Test>& tests() { return tests_; }
+  List<End>& ends() { return ends_; }
   // The states of the belief after a test, until the next exploration.
-  const std::vector<State>& after(std::size_t test) const { return after_[test]; }
+  const List<State>& after(std::size_t test) const { return after_[test]; }
 
   const Ways& ways_from(std::uint32_t start) {
     const auto [entry, is_new] = ways_.try_emplace(start);
@@ -109,9 +110,9 @@ class SeekPlaces {
     if (!is_new) return ways;
     ways.resize(places_.size());
     ways[start].distance = 0;
-    std::vector<std::uint32_t> open{start};
+    List<std::uint32_t> open{start};
     for (std::size_t i = 0; i < open.size(); ++i) {
-      const std::vector<Move>& moves = places_[open[i]].moves;
+      const List<Move>& moves = places_[open[i]].moves;
       for (std::size_t a = 0; a < moves.size(); ++a) {
         const std::uint32_t to = moves[a].next;
         if (to == nowhere || ways[to].distance != nowhere) continue;
@@ -122,9 +123,9 @@ class SeekPlaces {
     }
     return ways;
   }
-  std::vector<int> way(std::uint32_t from, std::uint32_t to, int last) {
+  List<int> way(std::uint32_t from, std::uint32_t to, int last) {
     const Ways& ways = ways_from(from);
-    std::vector<int> actions{last};
+    List<int> actions{last};
     for (; to != from; to = ways[to].before) actions.push_back(ways[to].by);
     std::ranges::reverse(actions);
     return actions;
@@ -135,9 +136,9 @@ class SeekPlaces {
   static constexpr int cells_of_numbers = 6;
   static constexpr int quantiles = 16;
 
-  void add_test(std::uint32_t place, int action, double reward, const std::vector<StepReports>& reports, std::vector<State>& next) {
+  void add_test(std::uint32_t place, int action, double reward, const List<StepReports>& reports, List<State>& next) {
     Test test{place, action, reward, 0};
-    const std::vector<Observation> responses = few_responses(reports);
+    const List<Observation> responses = few_responses(reports);
     if (!responses.empty()) {
       test.outcomes = responses.size();
       for (const StepReports& report : reports) {
@@ -152,9 +153,9 @@ class SeekPlaces {
   }
 
   // A number that is reported falls into one of a few cells of about the same probability.
-  bool by_cells(const std::vector<StepReports>& reports, Test& test) {
-    std::vector<double> all;
-    std::vector<std::vector<double>> own(reports.size());
+  bool by_cells(const List<StepReports>& reports, Test& test) {
+    List<double> all;
+    List<List<double>> own(reports.size());
     for (std::size_t k = 0; k < reports.size(); ++k) {
       const auto& branches = reports[k].branches();
       if (branches.size() != 1 || branches[0].numbers.size() != 1) return false;
@@ -164,7 +165,7 @@ class SeekPlaces {
     std::ranges::sort(all);
     test.outcomes = cells_of_numbers;
     for (const auto& numbers : own) {
-      std::vector<double> odds(cells_of_numbers, 0.01 / cells_of_numbers);
+      List<double> odds(cells_of_numbers, 0.01 / cells_of_numbers);
       for (const double number : numbers) {
         const std::size_t rank = std::ranges::lower_bound(all, number) - all.begin();
         odds[std::min<std::size_t>(rank * cells_of_numbers / all.size(), cells_of_numbers - 1)] += 0.99 / quantiles;
@@ -175,10 +176,10 @@ class SeekPlaces {
   }
 
   ReportedStep<Model> reported_;
-  std::vector<Place> places_;
-  std::vector<Test> tests_;
-  std::vector<std::vector<State>> after_;  // by test
-  std::vector<End> ends_;
+  List<Place> places_;
+  List<Test> tests_;
+  List<List<State>> after_;  // by test
+  List<End> ends_;
   std::map<std::uint32_t, Ways> ways_;  // by the place where they begin
 };
 

@@ -7,6 +7,7 @@
 // policy, whose true state the code of the model steps, tell what it returns.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
@@ -72,7 +73,7 @@ class SeekPolicy {
 
   // Keeps the ends that return most on average.
   void find_ends(Sampler& random) {
-    std::vector<End>& ends = places_.ends();
+    List<End>& ends = places_.ends();
     std::ranges::stable_sort(ends, [](const End& one, const End& other) { return one.reward > other.reward; });
     if (ends.size() > most_ends) ends.resize(most_ends);
     returned_at_once_ = 0;
@@ -90,14 +91,14 @@ class SeekPolicy {
     for (const End& end : places_.ends()) {
       if (places_.ways_from(place)[end.place].distance == Places::nowhere) continue;
       State state = start;
-      const std::vector<int> actions = places_.way(place, end.place, end.action);
+      const List<int> actions = places_.way(place, end.place, end.action);
       const double returned = taken(state, actions, random);
       if (best.action >= 0 && returned <= best.returned) continue;
       best = {actions.front(), returned, Model::ending(state) == Ending::failure};
     }
     return best;
   }
-  double taken(State& state, const std::vector<int>& actions, Sampler& random) {
+  double taken(State& state, const List<int>& actions, Sampler& random) {
     double sum = 0, discount = 1;
     for (const int action : actions) {
       if (Model::ending(state) != Ending::running) break;
@@ -115,7 +116,7 @@ class SeekPolicy {
     double wins = 0;
     for (std::size_t t = 0; t < places_.tests().size(); ++t) {
       const Test& test = places_.tests()[t];
-      const std::vector<State>& before = places_.places()[test.place].states;
+      const List<State>& before = places_.places()[test.place].states;
       for (std::size_t k = 0; k < before.size(); ++k) {
         const State& after = places_.after(t)[k];
         if (!running_down_.differ(after, before[k])) continue;
@@ -156,7 +157,7 @@ class SeekPolicy {
 
   // --- the policy
 
-  double information(const Test& test, const std::vector<double>& weights) {
+  double information(const Test& test, const List<double>& weights) {
     seen_.assign(test.outcomes, 0);
     double doubt = 0;
     for (std::size_t z = 0; z < classes_; ++z) {
@@ -169,7 +170,7 @@ class SeekPolicy {
   }
 
   // The test whose nat is cheapest among those after which the best end does not fail; null if there is none.
-  const Test* best_test(std::uint32_t place, const std::vector<double>& weights, const State& state, Sampler& random) {
+  const Test* best_test(std::uint32_t place, const List<double>& weights, const State& state, Sampler& random) {
     const auto& ways = places_.ways_from(place);
     ranked_.clear();
     for (const Test& test : places_.tests()) {
@@ -206,13 +207,13 @@ class SeekPolicy {
 
   double played(std::size_t k, Sampler& random) {
     State state = belief_.states()[k];
-    std::vector<double> weights = prior_;
+    List<double> weights = prior_;
     std::uint32_t place = 0;
     double sum = 0, discount = 1;
     for (int left = horizon_; left > 0;) {
       const Test* const test = best_test(place, weights, state, random);
       if (test == nullptr) return sum + discount * ended(place, state, random).returned;
-      const std::vector<int> actions = places_.way(place, test->place, test->action);
+      const List<int> actions = places_.way(place, test->place, test->action);
       State before = state;
       for (const int action : actions) {
         before = state;
@@ -240,14 +241,14 @@ class SeekPolicy {
   SampledBelief<Model> belief_;
   RunningDown<Model> running_down_;
   Places places_;
-  std::vector<std::uint64_t> wins_;    // by state
-  std::vector<std::size_t> class_of_;  // by state
+  List<std::uint64_t> wins_;    // by state
+  List<std::size_t> class_of_;  // by state
   std::size_t classes_ = 0;
-  std::vector<double> prior_;  // by class
+  List<double> prior_;  // by class
   double stake_ = 0;           // what a win is worth, on average
   double returned_at_once_ = 0;
-  std::vector<double> seen_;
-  std::vector<std::pair<double, const Test*>> ranked_;
+  List<double> seen_;
+  List<std::pair<double, const Test*>> ranked_;
 };
 
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 
+#include "aos/base/list.hpp"
 #include "aos/model/values.hpp"
 #include "aos/planning/values/value_constants.hpp"
 
@@ -22,7 +23,7 @@ class CellVariable {
   double number(const void* state) const { return number_.of(state); }
 
   // Makes the cells from the numbers of the examples. Returns whether these differ.
-  bool divide(std::vector<double>& numbers);
+  bool divide(List<double>& numbers);
 
   std::uint32_t cells() const { return cells_; }
   std::uint16_t cell(const void* state) const {
@@ -39,7 +40,7 @@ class CellVariable {
   PlacedNumber number_;
   double lowest_ = 0;
   bool has_ranges_ = false;
-  std::vector<double> limits_;
+  List<double> limits_;
   std::uint32_t cells_ = 0;
 };
 
@@ -47,7 +48,7 @@ class CellTables {
  public:
   using Row = const std::uint16_t*;
 
-  explicit CellTables(const std::vector<CellVariable>& variables = {}) {
+  explicit CellTables(const List<CellVariable>& variables = {}) {
     for (const CellVariable& variable : variables) cells_.push_back(variable.cells());
   }
 
@@ -67,11 +68,11 @@ class CellTables {
     return sums;
   }
   // The variables that have a table, in ascending order.
-  std::vector<std::uint32_t> used_variables() const;
+  List<std::uint32_t> used_variables() const;
 
   // Fits the weights to the targets of the examples, whose rows follow one another in `rows`. Then adds a
   // table if one explains enough of what is left.
-  void fit(const std::vector<std::uint16_t>& rows, const std::vector<double>& targets);
+  void fit(const List<std::uint16_t>& rows, const List<double>& targets);
 
  private:
   struct Table {
@@ -112,18 +113,18 @@ class CellTables {
   std::array<double, side_by_side> gains(const Candidate* tables, std::size_t count, double variance);
   bool is_there(const Table& table) const;
 
-  std::vector<std::uint32_t> cells_;  // how many, by variable
-  std::vector<Table> tables_;
-  std::array<std::vector<float>, 2> weights_;
+  List<std::uint32_t> cells_;  // how many, by variable
+  List<Table> tables_;
+  std::array<List<float>, 2> weights_;
   double mean_ = 0;
   const std::uint16_t* rows_ = nullptr;  // while fitting
-  std::vector<double> left_;             // what is left of the targets, while fitting
-  std::vector<Sum> sums_;
+  List<double> left_;             // what is left of the targets, while fitting
+  List<Sum> sums_;
   // While a new table is looked for, of every so many examples:
-  std::vector<std::vector<std::uint32_t>> columns_;  // the cells of each variable
-  std::vector<std::vector<std::uint32_t>> places_;   // in each table
-  std::vector<std::uint32_t> none_;                  // places in a table of no variables
-  std::vector<double> sampled_;                      // what is left
+  List<List<std::uint32_t>> columns_;  // the cells of each variable
+  List<List<std::uint32_t>> places_;   // in each table
+  List<std::uint32_t> none_;                  // places in a table of no variables
+  List<double> sampled_;                      // what is left
 };
 
 }

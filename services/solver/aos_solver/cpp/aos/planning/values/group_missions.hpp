@@ -6,6 +6,7 @@
 // is best for a few drawn states is too good for these. A mission that plans can be expected to return as much, or more.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/random.hpp"
@@ -194,17 +195,17 @@ class GroupMissions {
   const StateValues<Model>* values_ = nullptr;
   const MdpValues<Model>* listed_ = nullptr;
   Sampler random_{0};
-  std::vector<Follower> followers_;  // group by group
-  std::vector<std::size_t> ends_;    // of the groups
-  std::vector<Follower> next_;
-  std::vector<std::size_t> next_ends_;
-  std::vector<Follower> group_;
-  std::vector<Follower> rare_;
+  List<Follower> followers_;  // group by group
+  List<std::size_t> ends_;    // of the groups
+  List<Follower> next_;
+  List<std::size_t> next_ends_;
+  List<Follower> group_;
+  List<Follower> rare_;
   std::vector<bool> chooses_;  // by place
-  std::vector<const Follower*> choosers_;
-  std::vector<double> losses_;
-  std::vector<double> sums_;
-  std::vector<double> worths_;
+  List<const Follower*> choosers_;
+  List<double> losses_;
+  List<double> sums_;
+  List<double> worths_;
   RandomWalk<Model> walk_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
@@ -23,7 +24,7 @@ class LeafCells {
   // others does not move in a walk.
   void prepare(const Belief<Model>& belief, Sampler& random) {
     find_leaves(belief.particles().front().state);
-    std::vector<std::vector<double>> changes(leaves_.size());  // by the first leaf of the list
+    List<List<double>> changes(leaves_.size());  // by the first leaf of the list
     std::vector<bool> has_changed(leaves_.size());
     for (int walk = 0; walk < walks; ++walk) {
       State state = belief.sample(random);
@@ -38,7 +39,7 @@ class LeafCells {
         }
       }
     }
-    std::vector<Place> moving;
+    List<Place> moving;
     resting_.clear();
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
       if (!has_changed[leaves_[i].list]) {
@@ -101,13 +102,13 @@ class LeafCells {
     const std::byte* const place = Model::bytes_of(state) + leaf.offset;
     return leaf.size == sizeof(float) ? static_cast<double>(stored_at<float>(place)) : stored_at<double>(place);
   }
-  static double width_of(std::vector<double>& changes) {
+  static double width_of(List<double>& changes) {
     std::sort(changes.begin(), changes.end());
     return std::max(of_larger * changes[static_cast<std::size_t>(larger * static_cast<double>(changes.size() - 1))], 1e-9);
   }
 
-  std::vector<Place> leaves_;
-  std::vector<Place> resting_;
+  List<Place> leaves_;
+  List<Place> resting_;
   RandomWalk<Model> walk_;
 };
 

@@ -9,6 +9,7 @@
 // counting the same income twice, and more than one that follows a few rollouts (Bertsekas and Castanon, 1999).
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
@@ -257,16 +258,16 @@ class LearnedValues final : public StateValues<Model> {
   bool is_usable_ = false;
   int horizon_ = 0;
   StateCells<Model> cells_;
-  std::vector<std::uint32_t> used_;
+  List<std::uint32_t> used_;
   CellTables tables_;
   double lowest_ = 0;
   double highest_ = 0;
   RandomWalk<Model> walk_;
   // While learning:
-  std::vector<State> examples_;
-  std::vector<std::uint16_t> rows_;    // of the examples, then of all successors
-  std::vector<Successor> successors_;  // by example and action
-  std::vector<double> targets_;
+  List<State> examples_;
+  List<std::uint16_t> rows_;    // of the examples, then of all successors
+  List<Successor> successors_;  // by example and action
+  List<double> targets_;
 };
 
 }

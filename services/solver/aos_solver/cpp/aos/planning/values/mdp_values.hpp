@@ -5,6 +5,7 @@
 // there is no room for all layers, only the last one is kept.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
@@ -78,9 +79,9 @@ class MdpValues final : public StateValues<Model> {
 
   // The most that each action may return from listed states with these weights, with the whole horizon to go: proven,
   // since no robot sees more than the state.
-  std::vector<double> at_most(const std::vector<std::pair<std::uint32_t, double>>& weights) const {
-    std::vector<double> most(actions());
-    const std::vector<double>& later = layer(horizon_ - 1);
+  List<double> at_most(const List<std::pair<std::uint32_t, double>>& weights) const {
+    List<double> most(actions());
+    const List<double>& later = layer(horizon_ - 1);
     for (std::size_t action = 0; action < actions(); ++action) {
       for (const auto& [number, weight] : weights) most[action] += weight * value_of(rows().row(number, action), later);
       most[action] += error_;
@@ -89,7 +90,7 @@ class MdpValues final : public StateValues<Model> {
   }
 
   // Adds the value of each action with many decisions to go, times a weight.
-  void add_action_values(std::uint32_t number, std::vector<double>& sums, double weight = 1) const {
+  void add_action_values(std::uint32_t number, List<double>& sums, double weight = 1) const {
     if (number == no_state) return;
     const float* values = &action_values_[number * actions()];
     for (std::size_t action = 0; action < actions(); ++action) sums[action] += weight * values[action];
@@ -100,14 +101,14 @@ class MdpValues final : public StateValues<Model> {
   std::size_t actions() const { return space_.actions(); }
 
   void iterate() {
-    layers_.assign(1, std::vector<double>(space_.size()));
+    layers_.assign(1, List<double>(space_.size()));
     action_values_.assign(space_.size() * actions(), 0);
     const bool has_room = space_.size() * (static_cast<std::size_t>(horizon_) + 1) <= max_layered_values;
     double change = 0;
     int decisions = 0;
     while (decisions < horizon_) {
       progress::tell("computing values of states", decisions, horizon_);
-      std::vector<double> values(space_.size());
+      List<double> values(space_.size());
       const MoreValues more = one_more_decision(rows(), layers_.back(), values, &action_values_);
       change = more.change;
       highest_ = more.highest;
@@ -134,9 +135,9 @@ class MdpValues final : public StateValues<Model> {
     return 2 * once * decisions * decisions * largest_size(rows().rewards);
   }
 
-  double value_of(std::size_t row, const std::vector<double>& later) const { return backed_up(rows(), row, later); }
+  double value_of(std::size_t row, const List<double>& later) const { return backed_up(rows(), row, later); }
 
-  [[gnu::always_inline]] const std::vector<double>& layer(int horizon) const {
+  [[gnu::always_inline]] const List<double>& layer(int horizon) const {
     return layers_[std::min(static_cast<std::size_t>(std::max(horizon, 0)), layers_.size() - 1)];
   }
 
@@ -146,8 +147,8 @@ class MdpValues final : public StateValues<Model> {
   bool is_prepared_ = false;  // by the last belief
   double highest_ = 0;
   double error_ = 0;  // of values with the whole horizon to go, at most
-  std::vector<std::vector<double>> layers_;
-  std::vector<float> action_values_;
+  List<List<double>> layers_;
+  List<float> action_values_;
 };
 
 }

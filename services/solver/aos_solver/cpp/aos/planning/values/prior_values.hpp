@@ -3,6 +3,7 @@
 // values and prior, beyond what the values' standard errors explain. The larger this error is, the more the values count.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -15,7 +16,7 @@
 namespace aos {
 
 // Makes a prior: how much less each action is worth than the best one.
-inline std::vector<double> below_best(std::vector<double> worths) {
+inline List<double> below_best(List<double> worths) {
   const double best = *std::max_element(worths.begin(), worths.end());
   for (double& worth : worths) worth = best - worth;
   return worths;
@@ -24,9 +25,9 @@ inline std::vector<double> below_best(std::vector<double> worths) {
 // The prior by learned values of the next states, on average over some states of the belief and with the same
 // luck for all actions (QMDP: Littman, Cassandra and Kaelbling, 1995).
 template <class Model>
-std::vector<double> learned_prior(const LearnedValues<Model>& values, const Belief<Model>& belief, int horizon,
+List<double> learned_prior(const LearnedValues<Model>& values, const Belief<Model>& belief, int horizon,
                                   Sampler& random) {
-  std::vector<double> worths(Model::action_count());
+  List<double> worths(Model::action_count());
   const auto states = std::clamp<std::size_t>(max_prior_steps / worths.size(), 20, 500);
   for (std::size_t i = 0; i < states; ++i) {
     const typename Model::State& state = belief.sample(random);
@@ -38,15 +39,15 @@ std::vector<double> learned_prior(const LearnedValues<Model>& values, const Beli
 }
 
 template <class Model>
-std::vector<double> listed_prior(const MdpValues<Model>& values, const StateSpace<Model>& space, const Belief<Model>& belief) {
-  std::vector<double> worths(Model::action_count());
+List<double> listed_prior(const MdpValues<Model>& values, const StateSpace<Model>& space, const Belief<Model>& belief) {
+  List<double> worths(Model::action_count());
   for (const auto& [number, weight] : space.weights_of(belief)) values.add_action_values(number, worths, weight);
   return below_best(std::move(worths));
 }
 
 // Draws estimates towards a prior in their unit. `counts(estimate)` tells which actions were searched for
 // long enough; the others get the value of the prior.
-void draw_towards(const std::vector<double>& prior, Estimates& estimates, auto&& counts) {
+void draw_towards(const List<double>& prior, Estimates& estimates, auto&& counts) {
   double sum = 0;
   double count = 0;
   for (std::size_t a = 0; a < prior.size(); ++a) {

@@ -1,6 +1,7 @@
 // Actions as a rollout takes them (rollout.hpp), one by one: those of a random walk repeat, as those of some rollouts do.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/rollout.hpp"
 #include "aos/model/step.hpp"
@@ -43,7 +44,7 @@ class RandomWalk {
 
   int action_ = 0;
   int repeats_ = 0;
-  std::vector<double> odds_;
+  List<double> odds_;
 };
 
 }

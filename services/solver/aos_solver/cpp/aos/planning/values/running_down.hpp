@@ -1,6 +1,7 @@
 // What of a state only runs one way, such as a battery: it makes no place new, and no test wins by it.
 #pragma once
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
@@ -19,9 +20,9 @@ class RunningDown {
   // Finds it by random walks from the belief.
   void find(const Belief<Model>& belief, Sampler& random) {
     cells_.prepare(belief, random);
-    const std::vector<PlacedNumber> numbers = numbers_of(belief.particles().front().state);
-    std::vector<Trend> of_cells(cells_.size()), of_numbers(numbers.size());
-    std::vector<std::uint64_t> cells_before(cells_.size());
+    const List<PlacedNumber> numbers = numbers_of(belief.particles().front().state);
+    List<Trend> of_cells(cells_.size()), of_numbers(numbers.size());
+    List<std::uint64_t> cells_before(cells_.size());
     cell_.resize(cells_.size());
     int taken = 0;
     RandomWalk<Model> walk;
@@ -53,7 +54,7 @@ class RunningDown {
     for (std::size_t c = 0; c < cell_.size(); ++c) key = runs_[c] ? key : mixed(key, cell_[c]);
     return key;
   }
-  std::uint64_t place_of(const std::vector<State>& states) {
+  std::uint64_t place_of(const List<State>& states) {
     std::uint64_t key = 0;
     for (const State& state : states) key = mixed(key, place_of(state));
     return key;
@@ -88,14 +89,14 @@ class RunningDown {
     bool only_runs(int taken) const { return std::min(ups, downs) == 0 && 2 * std::max(ups, downs) > taken; }
   };
 
-  static std::vector<PlacedNumber> numbers_of(const State& state) {
-    std::vector<PlacedNumber> numbers;
+  static List<PlacedNumber> numbers_of(const State& state) {
+    List<PlacedNumber> numbers;
     for_each_number<Model>(state, [&](const std::string&, const PlacedNumber& number) { numbers.push_back(number); });
     return numbers;
   }
 
   LeafCells<Model> cells_;
-  std::vector<std::uint64_t> cell_;  // of the state that is looked at
+  List<std::uint64_t> cell_;  // of the state that is looked at
   std::vector<bool> runs_;           // by cell
   std::vector<bool> lasts_;          // by byte of a state
 };

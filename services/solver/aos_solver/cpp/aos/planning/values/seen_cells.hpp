@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 
 namespace aos {
@@ -12,7 +13,7 @@ namespace aos {
 // Notes in `seen` the values of those of `count` variables that are looked at, or with width 2 their pairs with all others.
 // Returns whether any is new.
 bool note_cells(auto& seen, const std::uint64_t* cells, std::size_t count, int width, auto&& is_looked_at) {
-  thread_local std::vector<std::uint64_t> atoms;
+  thread_local List<std::uint64_t> atoms;
   atoms.clear();
   bool is_new = false;
   for (std::size_t variable = 0; variable < count; ++variable) {
@@ -52,13 +53,13 @@ class SeenCells {
     return slots_[slot];
   }
   void grow() {
-    const std::vector<std::uint64_t> before = std::exchange(slots_, std::vector<std::uint64_t>(4 * slots_.size()));
+    const List<std::uint64_t> before = std::exchange(slots_, List<std::uint64_t>(4 * slots_.size()));
     for (const std::uint64_t value : before) {
       if (value != 0) slot_of(value) = value;
     }
   }
 
-  std::vector<std::uint64_t> slots_ = std::vector<std::uint64_t>(1 << 10);
+  List<std::uint64_t> slots_ = List<std::uint64_t>(1 << 10);
   std::size_t size_ = 0;
 };
 
@@ -72,7 +73,7 @@ class SeenBits {
   }
 
  private:
-  std::vector<std::uint64_t> words_ = std::vector<std::uint64_t>(1 << 12);
+  List<std::uint64_t> words_ = List<std::uint64_t>(1 << 12);
 };
 
 }

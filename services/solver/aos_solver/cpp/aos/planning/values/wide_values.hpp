@@ -5,6 +5,7 @@
 
 #include <bitset>
 
+#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
@@ -103,8 +104,8 @@ class WideValues final : public StateValues<Model> {
   bool is_affordable(const Belief<Model>& belief, int horizon) {
     Sampler random{1};  // its own, so that a look in vain changes no decision
     RandomWalk<Model> walk;
-    std::vector<std::bitset<256>> values(Model::state_bytes());
-    std::vector<State> priced;
+    List<std::bitset<256>> values(Model::state_bytes());
+    List<State> priced;
     const std::size_t work_of_one = 1 + Model::state_bytes() / 64;
     std::size_t work = 0;
     for (std::size_t walks = 0; walks < looked_at && work < max_looking_work; ++walks) {
@@ -126,7 +127,7 @@ class WideValues final : public StateValues<Model> {
   }
 
   // How many combinations of these values there are, without those of irrelevant variables.
-  static double combinations(std::vector<std::bitset<256>>& values) {
+  static double combinations(List<std::bitset<256>>& values) {
     for (const ByteRange& range : Model::irrelevant()) {
       for (std::size_t i = 0; i < range.size; ++i) values[range.offset + i].reset();
     }
@@ -182,14 +183,14 @@ class WideValues final : public StateValues<Model> {
 
   bool has_tried_ = false;
   StateLister<Model> lister_;
-  std::vector<float> values_;
+  List<float> values_;
   float highest_ = 0;
   // While listing:
-  std::vector<int> actions_;  // one of those that are alike
-  std::vector<Path> block_;   // of the states of a block, action by action
-  std::vector<Row> block_rows_;
+  List<int> actions_;  // one of those that are alike
+  List<Path> block_;   // of the states of a block, action by action
+  List<Row> block_rows_;
   CompactModel rows_;
-  std::vector<CompactModel::Outcome> outcomes_;
+  List<CompactModel::Outcome> outcomes_;
 };
 
 }
