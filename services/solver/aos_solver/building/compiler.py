@@ -70,7 +70,7 @@ class Compiler(msgspec.Struct, frozen=True):
         """The options for the engine, most of which runs seldom: the second level takes a quarter longer.
 
         Its searches by POMCP ask for that level themselves (tree_search.hpp). Clang does not know how to.
-        It takes 1.3 GB of memory in place of 1.1 and a tenth less time where gcc does not collect garbage.
+        It takes more memory and a tenth less time where gcc does not collect garbage.
         """
         more = ("-finline-small-functions", "-findirect-inlining", "-fstrict-aliasing")
         return ("-O1", *more, *self.without_collections) if self.family == "gcc" else ()

@@ -36,7 +36,7 @@ FUNCTIONS = "support"
 """The part with the functions that models call."""
 
 _PART_BYTES = 1500 << 20
-"""The longest part takes 1.3 GB of memory."""
+"""The longest part takes 1.1 GB of memory."""
 
 _MODEL_DEADLINES = 5
 """The engine has so many times a model's deadline: our own sources are known to end, and only a busy machine
