@@ -7,7 +7,6 @@
 #include <ctime>
 #include <exception>
 
-#include "aos/base/list.hpp"
 #include "point_based/online.hpp"
 #include "random_models.hpp"
 #include "reference.hpp"

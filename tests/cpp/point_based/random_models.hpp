@@ -8,7 +8,6 @@
 #include <random>
 #include <string>
 
-#include "aos/base/list.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace truth {

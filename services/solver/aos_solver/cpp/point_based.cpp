@@ -1,5 +1,4 @@
 // Point-based search for the engine; compiled once for all models, whatever the size of their states.
-#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "point_based/constants.hpp"
 #include "point_based/online.hpp"

@@ -1,4 +1,3 @@
-#include "aos/base/list.hpp"
 #include "aos/planning/values/cell_tables.hpp"
 
 #include <cmath>

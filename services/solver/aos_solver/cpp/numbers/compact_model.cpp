@@ -1,4 +1,3 @@
-#include "aos/base/list.hpp"
 #include "numbers/compact_model.hpp"
 
 #include "aos/base/add_up.hpp"

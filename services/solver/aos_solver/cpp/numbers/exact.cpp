@@ -1,4 +1,3 @@
-#include "aos/base/list.hpp"
 #include "numbers/exact.hpp"
 
 #include "aos/base/progress.hpp"

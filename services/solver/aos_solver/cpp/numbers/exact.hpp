@@ -11,7 +11,6 @@
 #include <map>
 #include <unordered_map>
 
-#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "numbers/belief_key.hpp"
 #include "numbers/observable_values.hpp"

@@ -1,4 +1,3 @@
-#include "aos/base/list.hpp"
 #include "numbers/observable_values.hpp"
 
 #include <algorithm>

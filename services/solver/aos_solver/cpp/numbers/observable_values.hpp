@@ -3,7 +3,6 @@
 
 #include <cstddef>
 
-#include "aos/base/list.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace aos {

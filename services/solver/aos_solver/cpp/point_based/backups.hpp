@@ -1,7 +1,6 @@
 // Backups: both bounds of a belief, from the bounds of its successors.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "point_based/belief_graph.hpp"
 
 namespace aos::point_based {

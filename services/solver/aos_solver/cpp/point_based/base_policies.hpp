@@ -8,7 +8,6 @@
 // Missions are played by each in turns. The better half goes on, until one is left, and so does the policy that decided last.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "point_based/belief_graph.hpp"
 #include "point_based/constants.hpp"

@@ -8,7 +8,6 @@
 #include <memory>
 #include <unordered_map>
 
-#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
 #include "numbers/belief_key.hpp"

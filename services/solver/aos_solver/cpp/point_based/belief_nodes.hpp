@@ -1,7 +1,6 @@
 // The nodes of a belief graph: the beliefs that were reached, their actions, and the successors of these.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "point_based/bounds.hpp"
 
 namespace aos::point_based {

@@ -2,7 +2,6 @@
 // add at the end of another plan.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/initial_bounds.hpp"
 #include "point_based/regions.hpp"

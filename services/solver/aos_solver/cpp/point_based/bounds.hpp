@@ -3,7 +3,6 @@
 
 #include <deque>
 
-#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "point_based/regions.hpp"
 

@@ -8,7 +8,6 @@
 
 #include <map>
 
-#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/initial_bounds.hpp"

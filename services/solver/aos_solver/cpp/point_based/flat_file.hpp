@@ -14,7 +14,6 @@
 #include <string>
 
 #include "aos/base/descriptor_file.hpp"
-#include "aos/base/list.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace aos::point_based {

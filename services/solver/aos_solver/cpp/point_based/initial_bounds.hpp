@@ -6,7 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/rounding.hpp"

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "aos/base/function_ref.hpp"
-#include "aos/base/list.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace aos::point_based {

@@ -7,7 +7,6 @@
 
 #include <cmath>
 
-#include "aos/base/list.hpp"
 #include "point_based/flat_model.hpp"
 #include "point_based/rounding.hpp"
 

@@ -1,7 +1,6 @@
 // Bayes' rule between regions: what an action predicts from a belief, and the belief after an observation.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/regions.hpp"
 

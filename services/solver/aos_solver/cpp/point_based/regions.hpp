@@ -9,7 +9,6 @@
 #include <limits>
 #include <numeric>
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
 #include "point_based/flat_model.hpp"

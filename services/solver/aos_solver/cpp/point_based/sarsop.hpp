@@ -10,7 +10,6 @@
 #include <string>
 #include <tuple>
 
-#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "point_based/backups.hpp"
 #include "point_based/base_policies.hpp"

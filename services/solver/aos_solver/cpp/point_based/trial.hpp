@@ -1,7 +1,6 @@
 // Trials: paths from a belief into the graph, along which actions are opened.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "point_based/backups.hpp"
 #include "point_based/belief_graph.hpp"

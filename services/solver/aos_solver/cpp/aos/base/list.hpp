@@ -44,8 +44,6 @@ class List {
   using size_type = std::size_t;
   using reference = T&;
   using const_reference = const T&;
-  using iterator = T*;
-  using const_iterator = const T*;
 
   List() = default;
   explicit List(std::size_t size) : List() { resize(size); }
@@ -75,8 +73,6 @@ class List {
   T* end() { return data_ + size_; }
   const T* begin() const { return data_; }
   const T* end() const { return data_ + size_; }
-  auto rbegin() { return std::reverse_iterator{end()}; }
-  auto rend() { return std::reverse_iterator{begin()}; }
   auto rbegin() const { return std::reverse_iterator{end()}; }
   auto rend() const { return std::reverse_iterator{begin()}; }
   T* data() { return data_; }
@@ -228,8 +224,5 @@ class List {
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
 };
-
-template <class Iterator>
-List(Iterator, Iterator) -> List<std::iter_value_t<Iterator>>;
 
 }  // namespace aos

@@ -6,7 +6,6 @@
 // the exact one. If steps cannot be enumerated, the belief is drawn from then on: see drawn_step.hpp.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/drawn_step.hpp"
 #include "aos/belief/effort.hpp"

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 
-#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 
 namespace aos {

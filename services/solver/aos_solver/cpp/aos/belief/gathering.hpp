@@ -2,7 +2,6 @@
 #pragma once
 
 #include "aos/base/function_ref.hpp"
-#include "aos/base/list.hpp"
 #include "aos/base/number_index.hpp"
 #include "aos/draws/random.hpp"
 

@@ -22,7 +22,6 @@
 #pragma once
 
 #include "aos/base/function_ref.hpp"
-#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
 #include "aos/model/step.hpp"

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "aos/base/add_up.hpp"
-#include "aos/base/list.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"

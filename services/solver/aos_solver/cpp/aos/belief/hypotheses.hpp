@@ -11,7 +11,6 @@
 
 #include <set>
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/belief_digest.hpp"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "aos/base/list.hpp"
 #include "aos/draws/loop_heads.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"

@@ -8,7 +8,6 @@
 #include <cstring>
 
 #include "aos/base/descriptor_file.hpp"
-#include "aos/base/list.hpp"
 #include "aos/belief/history.hpp"
 
 namespace aos {

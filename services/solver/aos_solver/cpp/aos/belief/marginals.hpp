@@ -4,7 +4,6 @@
 
 #include <unordered_map>
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
 #include "aos/base/stable_order.hpp"

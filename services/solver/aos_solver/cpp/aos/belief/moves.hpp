@@ -13,7 +13,6 @@
 // The states that a copy has passed are kept (passage.hpp). The limits of `moved` count the steps of a proposal that repeats all.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/free_draws.hpp"
 #include "aos/belief/guided_step.hpp"
 #include "aos/belief/history.hpp"

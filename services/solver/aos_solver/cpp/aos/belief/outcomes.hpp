@@ -1,7 +1,6 @@
 // The outcomes of an action from weighted states, if steps can be enumerated.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/model/step.hpp"

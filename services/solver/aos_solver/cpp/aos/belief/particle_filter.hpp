@@ -7,7 +7,6 @@
 // or if they descend from too few origins.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/guided_step.hpp"

@@ -1,7 +1,6 @@
 // The blocks of a trace with the states after them, as far as these are known.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/history.hpp"
 
 namespace aos {

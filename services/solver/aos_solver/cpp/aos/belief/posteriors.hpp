@@ -1,7 +1,6 @@
 // What a report makes of several beliefs.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 

@@ -2,7 +2,6 @@
 // others are as the initial belief has them.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"

@@ -4,7 +4,6 @@
 // not, because the documents have changed, the belief is taken over alone, and a new history begins with it.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/draws/observed_numbers.hpp"

@@ -2,7 +2,6 @@
 // values of one initial state, so that states which differ in nothing else are equal.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/values.hpp"
 #include "aos/text/json.hpp"

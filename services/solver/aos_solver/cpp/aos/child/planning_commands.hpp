@@ -2,7 +2,6 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
-#include "aos/base/list.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/goal_reach.hpp"

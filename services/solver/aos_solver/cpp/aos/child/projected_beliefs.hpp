@@ -1,7 +1,6 @@
 // The commands by which a belief goes over to an engine of other variables.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/projection.hpp"
 #include "aos/child/command.hpp"

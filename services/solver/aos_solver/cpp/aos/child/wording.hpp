@@ -1,7 +1,6 @@
 // Translates the model's numbers into the words of the documents, and back.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/child/command.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/model/step.hpp"

@@ -1,7 +1,6 @@
 // The commands for simulated worlds: one world for missions without a robot, many worlds for a learner.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/risks.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/wording.hpp"

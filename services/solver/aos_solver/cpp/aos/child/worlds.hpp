@@ -3,7 +3,6 @@
 // their order. Responses of the same name are the same observation. Text responses are reported as texts.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"

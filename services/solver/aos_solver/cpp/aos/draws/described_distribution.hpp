@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "aos/base/list.hpp"
 #include "aos/draws/normal.hpp"
 #include "aos/draws/random.hpp"
 

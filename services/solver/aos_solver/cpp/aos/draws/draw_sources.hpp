@@ -2,7 +2,6 @@
 // includes this file.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/directed.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/loop_elimination.hpp"

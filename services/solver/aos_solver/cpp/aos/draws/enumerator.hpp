@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "aos/base/function_ref.hpp"
-#include "aos/base/list.hpp"
 #include "aos/draws/directed.hpp"
 #include "aos/draws/loop_chain.hpp"
 #include "aos/draws/loop_heads.hpp"

@@ -7,7 +7,6 @@
 #include <functional>
 
 #include "aos/base/add_up.hpp"
-#include "aos/base/list.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/loop_chain.hpp"
 

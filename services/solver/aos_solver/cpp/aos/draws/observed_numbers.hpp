@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "aos/base/list.hpp"
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/random.hpp"
 

@@ -2,7 +2,6 @@
 // numbers are given, and the later ones are random.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/directed.hpp"
 #include "aos/draws/loop_heads.hpp"
 #include "aos/draws/random.hpp"

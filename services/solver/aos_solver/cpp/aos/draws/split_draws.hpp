@@ -9,7 +9,6 @@
 // light path before, so that it does not depend on what is drawn now.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/directed.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/random.hpp"

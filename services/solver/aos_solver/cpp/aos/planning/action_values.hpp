@@ -8,7 +8,6 @@
 
 #include <string>
 
-#include "aos/base/list.hpp"
 #include "aos/planning/budget.hpp"
 
 namespace aos {

@@ -5,7 +5,6 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/function_ref.hpp"
-#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"

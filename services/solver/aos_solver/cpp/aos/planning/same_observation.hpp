@@ -1,7 +1,6 @@
 // Elements by the observation that each has, such as the scenarios or states that a group had before a step.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 
 namespace aos {

@@ -1,7 +1,6 @@
 // What planners have in common that search a tree: what they tell of it, and missions that show what it promises too much.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/action_values.hpp"

@@ -8,7 +8,6 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
-#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"

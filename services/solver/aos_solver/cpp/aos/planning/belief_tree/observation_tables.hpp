@@ -8,7 +8,6 @@
 #include <map>
 #include <unordered_map>
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/random.hpp"

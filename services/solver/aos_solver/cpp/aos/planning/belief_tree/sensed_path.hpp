@@ -2,7 +2,6 @@
 // that shape only what is observed come from strata, and the pieces of a text response are noted between them.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/directed.hpp"
 #include "aos/draws/distributions.hpp"

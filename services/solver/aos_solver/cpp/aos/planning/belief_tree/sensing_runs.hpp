@@ -1,7 +1,6 @@
 // What model code reports on its way from a state to a next state, run by run, with other draws of the sensors.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/model/blame.hpp"

@@ -7,7 +7,6 @@
 // one does has tables of whole texts. Outcomes that give the same in the first runs share a table.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"

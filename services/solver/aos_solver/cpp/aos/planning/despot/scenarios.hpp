@@ -3,7 +3,6 @@
 // listed, a step is a draw from the list, whatever the documents' code takes.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
-#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"

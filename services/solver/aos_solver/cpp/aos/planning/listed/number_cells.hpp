@@ -8,7 +8,6 @@
 #include <map>
 #include <set>
 
-#include "aos/base/list.hpp"
 #include "aos/planning/listed/number_grid.hpp"
 #include "aos/planning/listed/number_reports.hpp"
 #include "point_based/flat_model.hpp"

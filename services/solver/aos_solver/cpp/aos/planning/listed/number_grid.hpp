@@ -4,7 +4,6 @@
 // (the agglomerative information bottleneck: Slonim and Tishby, 1999; only neighbours are merged here).
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/described_distribution.hpp"
 
 namespace aos {

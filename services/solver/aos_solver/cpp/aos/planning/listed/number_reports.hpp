@@ -5,7 +5,6 @@
 
 #include <unordered_map>
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/distributions.hpp"

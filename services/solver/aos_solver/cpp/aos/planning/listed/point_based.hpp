@@ -4,7 +4,6 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
-#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"

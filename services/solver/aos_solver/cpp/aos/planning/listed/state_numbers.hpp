@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
 #include "aos/model/reflection.hpp"

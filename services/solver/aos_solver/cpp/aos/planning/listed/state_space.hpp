@@ -4,7 +4,6 @@
 
 #include "aos/base/add_up.hpp"
 #include "aos/base/fault.hpp"
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/statistics.hpp"

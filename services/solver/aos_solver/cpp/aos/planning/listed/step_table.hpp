@@ -4,7 +4,6 @@
 // as it is and makes their spread smaller.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/alias.hpp"
 #include "aos/model/step.hpp"

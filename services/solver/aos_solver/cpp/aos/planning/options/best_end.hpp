@@ -4,7 +4,6 @@
 // after which an end earns most, and again, as long as that gains something. The state is seen.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"

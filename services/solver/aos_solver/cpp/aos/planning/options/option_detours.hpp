@@ -2,7 +2,6 @@
 // an observation after them, made several times. It may change the state, as a camera does that drains the battery.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"

@@ -2,7 +2,6 @@
 // them earns anything, a search looks for another one.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_library.hpp"

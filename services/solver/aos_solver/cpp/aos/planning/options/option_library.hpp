@@ -1,7 +1,6 @@
 // The options that are known. They are found by searches from states of the belief, and kept from decision to decision.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"

@@ -1,7 +1,6 @@
 // What can be observed elsewhere: moves, with what is observed on the way or where they lead.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"

@@ -5,7 +5,6 @@
 // move is worth more than that move, by as much as the order brings. What tells the same before and after the move may wait.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/options/decision_clock.hpp"

@@ -11,7 +11,6 @@
 //   move, and observe on the way or where it leads.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"

@@ -2,7 +2,6 @@
 // lost where it is not, which is the regret of not knowing it.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/options/option_gains.hpp"

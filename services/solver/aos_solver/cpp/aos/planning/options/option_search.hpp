@@ -9,7 +9,6 @@
 // first, and what is new is so among states in which as many conditions hold (best-first width search: Lipovetzky and Geffner, 2017).
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/draws/random.hpp"

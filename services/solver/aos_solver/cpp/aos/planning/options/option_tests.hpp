@@ -1,7 +1,6 @@
 // What can be observed where the robot is: actions that change nothing, and what they tell of the state.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"

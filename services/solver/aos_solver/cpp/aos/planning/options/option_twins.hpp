@@ -3,7 +3,6 @@
 // same option is best. A test that tells of options only reports the same from both.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"

@@ -2,7 +2,6 @@
 // options of a belief count once each; here the same may be earned again and again.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/decision_clock.hpp"

@@ -1,7 +1,6 @@
 // Plain plans: the same action again and again, as far as the mission goes on. To leave, to land or to wait is one of them.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/draws/random.hpp"

@@ -1,7 +1,6 @@
 // All that can be observed where the same is observed several times, if that is little.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
 #include "aos/planning/options/step_reports.hpp"
 

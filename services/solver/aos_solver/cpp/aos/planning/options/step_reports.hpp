@@ -3,7 +3,6 @@
 // random has the reports of one of its next states.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/enumerator.hpp"

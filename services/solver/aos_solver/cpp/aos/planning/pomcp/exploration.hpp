@@ -2,7 +2,6 @@
 // returns, and is polynomial and not logarithmic, since values drift while the tree below them grows (Shah, Xie and Xu, 2020).
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"

@@ -7,7 +7,6 @@
 // what these still lose for each nat: it looks further ahead, and pays less.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"

@@ -6,7 +6,6 @@
 
 #include <unordered_map>
 
-#include "aos/base/list.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"

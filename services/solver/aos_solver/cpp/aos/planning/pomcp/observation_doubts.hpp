@@ -3,7 +3,6 @@
 // the entropy of its belief, but for a constant. What is observed is counted in the tree; noise is found from all outcomes.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"

@@ -4,7 +4,6 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/function_ref.hpp"
-#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"

@@ -2,7 +2,6 @@
 // budget in time ends once the choice cannot change.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
 

@@ -5,7 +5,6 @@
 // memory is used up, the tree stops growing and goes on learning. Letters: n visits, q value of an action, v value of a history.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
 #include "aos/base/room.hpp"

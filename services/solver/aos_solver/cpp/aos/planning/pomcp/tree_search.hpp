@@ -5,7 +5,6 @@
 // the reasons for departures from the paper. Letters: n visits, q value of an action, v value of a history.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"

@@ -4,7 +4,6 @@
 // less of that is luck, which hides what an action does. No best successor makes returns of a policy too high.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/stable_order.hpp"

@@ -2,7 +2,6 @@
 // is worth doing again and again counts by its income: a way that saves more and takes longer may save less in the end.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/statistics.hpp"

@@ -5,7 +5,6 @@
 // saves, and the other way round: the best way for a few drawn states is too good for these.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"

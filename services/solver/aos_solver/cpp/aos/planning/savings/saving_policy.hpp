@@ -6,7 +6,6 @@
 // It knows nothing of what serves later only, such as a tank that is full, and chance does. Missions tell which one to go by.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"

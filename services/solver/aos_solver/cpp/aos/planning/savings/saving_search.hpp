@@ -5,7 +5,6 @@
 // new that the last action has brought about, and that the world does not do by itself (own_changes.hpp; iterated width: Lipovetzky and Geffner, 2012).
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"

@@ -1,7 +1,6 @@
 // The places that moves lead to which tell nothing, the tests that can be made there, the ends, and the ways between.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"

@@ -7,7 +7,6 @@
 // policy, whose true state the code of the model steps, tell what it returns.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 
-#include "aos/base/list.hpp"
 #include "aos/model/values.hpp"
 #include "aos/planning/values/value_constants.hpp"
 

@@ -6,7 +6,6 @@
 // is best for a few drawn states is too good for these. A mission that plans can be expected to return as much, or more.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/random.hpp"

@@ -4,7 +4,6 @@
 
 #include <map>
 
-#include "aos/base/list.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"

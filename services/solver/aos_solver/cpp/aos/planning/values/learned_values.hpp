@@ -9,7 +9,6 @@
 // counting the same income twice, and more than one that follows a few rollouts (Bertsekas and Castanon, 1999).
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"

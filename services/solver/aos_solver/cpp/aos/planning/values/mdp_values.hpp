@@ -5,7 +5,6 @@
 // there is no room for all layers, only the last one is kept.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"

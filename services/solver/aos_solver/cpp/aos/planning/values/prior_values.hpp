@@ -3,7 +3,6 @@
 // values and prior, beyond what the values' standard errors explain. The larger this error is, the more the values count.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"

@@ -1,7 +1,6 @@
 // What of a state only runs one way, such as a battery: it makes no place new, and no test wins by it.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "aos/base/list.hpp"
 #include "aos/base/mixed.hpp"
 
 namespace aos {

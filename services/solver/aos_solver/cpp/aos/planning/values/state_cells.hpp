@@ -1,7 +1,6 @@
 // The variables that differ among examples of states, each as one of few cells: what tables of states are fitted over.
 #pragma once
 
-#include "aos/base/list.hpp"
 #include "aos/model/values.hpp"
 #include "aos/planning/values/cell_tables.hpp"
 

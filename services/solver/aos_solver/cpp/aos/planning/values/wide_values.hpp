@@ -5,7 +5,6 @@
 
 #include <bitset>
 
-#include "aos/base/list.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
