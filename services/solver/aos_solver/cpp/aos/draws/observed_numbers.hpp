@@ -44,7 +44,7 @@ class ObservedNumbers {
   }
 
  private:
-  List<ObservedNumber>::iterator place_of(NumberKey key) {
+  ObservedNumber* place_of(NumberKey key) {
     return std::lower_bound(numbers_.begin(), numbers_.end(), key,
                             [](const ObservedNumber& number, NumberKey sought) { return number.key < sought; });
   }
