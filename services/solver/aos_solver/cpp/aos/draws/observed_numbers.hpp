@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <vector>
 
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/random.hpp"

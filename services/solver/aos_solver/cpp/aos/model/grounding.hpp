@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <vector>
 
 #include "aos/draws/random.hpp"
 #include "aos/model/reflection.hpp"

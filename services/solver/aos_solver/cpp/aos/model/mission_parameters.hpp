@@ -1,6 +1,8 @@
 // The values that a mission sets. The engine gets them when it is started, before any state is made.
 #pragma once
 
+#include <vector>
+
 #include "aos/model/reflection.hpp"
 #include "aos/model/state_text.hpp"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <vector>
 
 #include "aos/base/fault.hpp"
 #include "aos/base/reward_ledger.hpp"
