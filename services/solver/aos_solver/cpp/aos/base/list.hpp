@@ -1,5 +1,4 @@
-// The engine's list: what it needs of std::vector. The engine has lists of 165 types, and is compiled in 0.71 of the time that
-// std::vector takes: memory of plain elements grows by a function that is compiled once.
+// The engine's list: what it needs of std::vector, of which it has 165 types, in a fraction of the time to compile.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +40,7 @@ class List {
 
  public:
   using value_type = T;
-  using size_type = std::size_t;
+  using size_type = std::size_t;  // these are for std::priority_queue
   using reference = T&;
   using const_reference = const T&;
 
@@ -105,7 +104,7 @@ class List {
   }
   void resize(std::size_t size, const T& value) {
     if (size <= size_) return shrink(size);
-    const T added{value};  // it may be an element
+    const T added{value};
     make_room(size - size_);
     for (T* each = end(); each != data_ + size; ++each) ::new (static_cast<void*>(each)) T(added);
     size_ = size;
