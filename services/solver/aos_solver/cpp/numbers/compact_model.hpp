@@ -3,7 +3,6 @@
 // A state has no more than its distinct outcomes: of actions with the same outcomes only the best one is kept.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <unordered_map>
 

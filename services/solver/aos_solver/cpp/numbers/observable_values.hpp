@@ -1,8 +1,6 @@
 // The fully observable (MDP) values of a listed model, by decisions to go. No robot earns more.
 #pragma once
 
-#include <cstddef>
-
 #include "point_based/flat_model.hpp"
 
 namespace aos {

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <bit>
-#include <memory>
 #include <unordered_map>
 
 #include "aos/base/statistics.hpp"

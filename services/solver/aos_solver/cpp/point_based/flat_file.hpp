@@ -8,7 +8,6 @@
 //   f64 start_weight[starts]; u64 first_entry[starts + 1]; {u32 state, u32 unused, f64 probability}[start entries].
 #pragma once
 
-#include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <string>

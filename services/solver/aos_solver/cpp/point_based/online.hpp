@@ -3,7 +3,6 @@
 // Its implementation is an object file of its own, which is compiled once for all models.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <optional>
 #include <stdexcept>

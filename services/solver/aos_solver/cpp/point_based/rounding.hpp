@@ -4,9 +4,6 @@
 // computed bound is moved outwards by twice that, so that it holds in spite of rounding.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-
 #include "point_based/flat_model.hpp"
 
 namespace aos::point_based {

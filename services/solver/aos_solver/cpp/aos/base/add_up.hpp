@@ -1,8 +1,6 @@
 // Elements with weights, of which those with the same key become one.
 #pragma once
 
-#include <cstddef>
-
 #include "aos/base/list.hpp"
 
 namespace aos {

@@ -2,8 +2,6 @@
 // the operating system provides it as it is used. Clearing a list keeps the memory.
 #pragma once
 
-#include <cstddef>
-
 #include "aos/base/list.hpp"
 
 namespace aos {

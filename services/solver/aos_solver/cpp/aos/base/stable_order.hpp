@@ -2,8 +2,6 @@
 // library's own takes 5 kB for each type of element.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <numeric>
 

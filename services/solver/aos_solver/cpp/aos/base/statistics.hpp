@@ -1,7 +1,6 @@
 // What is found from samples and from probabilities.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 

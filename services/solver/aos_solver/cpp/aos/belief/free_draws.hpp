@@ -5,8 +5,6 @@
 // move that is nearly always accepted. One draw at a time would take as many moves as there are draws.
 #pragma once
 
-#include <algorithm>
-
 #include "aos/draws/random.hpp"
 
 namespace aos {

@@ -1,8 +1,6 @@
 // How many combinations of draws an initial belief has.
 #pragma once
 
-#include <algorithm>
-
 #include "aos/draws/loop_heads.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"

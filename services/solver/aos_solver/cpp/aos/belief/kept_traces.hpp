@@ -5,8 +5,6 @@
 // are written to the other one of two areas, so that those of the change before are whole until this one is.
 #pragma once
 
-#include <cstring>
-
 #include "aos/base/descriptor_file.hpp"
 #include "aos/belief/history.hpp"
 

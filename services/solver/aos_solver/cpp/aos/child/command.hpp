@@ -5,13 +5,10 @@
 // aos_solver/child/lines/command_line.py writes the lines.
 #pragma once
 
-#include <algorithm>
 #include <charconv>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "aos/base/list.hpp"
 

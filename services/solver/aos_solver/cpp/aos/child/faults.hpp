@@ -2,7 +2,6 @@
 #pragma once
 
 #include <exception>
-#include <new>
 
 #include "aos/base/fault.hpp"
 #include "aos/child/command.hpp"

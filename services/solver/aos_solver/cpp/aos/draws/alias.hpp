@@ -2,7 +2,6 @@
 // comparison, and no branch depends on the outcome. The columns are made as in Vose (1991).
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 
 #include "aos/base/list.hpp"

@@ -2,8 +2,6 @@
 // distributions and to compute the probability that a draw falls into an interval.
 #pragma once
 
-#include <algorithm>
-
 #include "aos/draws/normal.hpp"
 #include "aos/draws/random.hpp"
 

@@ -5,11 +5,7 @@
 // constructors are cheap and check nothing. A bad parameter raises a ModelFault at the first use.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <initializer_list>
-#include <iterator>
-#include <utility>
 
 #include "aos/base/list.hpp"
 

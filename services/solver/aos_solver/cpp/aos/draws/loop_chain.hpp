@@ -5,13 +5,10 @@
 // comes to each head on average: the sum of the probabilities of all paths there, however often they go round.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <queue>
 #include <string>
 #include <unordered_map>
-#include <utility>
 
 #include "aos/base/list.hpp"
 

@@ -4,7 +4,6 @@
 // successor is wanted, the number is left out. Where the number was observed, its density weighs the step.
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "aos/draws/distributions.hpp"

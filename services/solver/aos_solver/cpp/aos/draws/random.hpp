@@ -3,11 +3,7 @@
 #pragma once
 
 #include <concepts>
-#include <initializer_list>
-#include <iterator>
 #include <stdexcept>
-#include <type_traits>
-#include <utility>
 
 #include "aos/base/list.hpp"
 #include "aos/draws/loop_heads.hpp"

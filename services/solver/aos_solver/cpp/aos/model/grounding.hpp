@@ -1,7 +1,6 @@
 // Grounded actions: skills with values for their parameters. A model makes its actions once, at its start.
 #pragma once
 
-#include <algorithm>
 #include <deque>
 #include <vector>
 

@@ -7,11 +7,8 @@
 
 #include <bit>
 #include <concepts>
-#include <cstring>
-#include <initializer_list>
 #include <span>
 #include <tuple>
-#include <type_traits>
 
 #include "aos/base/mixed.hpp"
 #include "aos/model/text.hpp"

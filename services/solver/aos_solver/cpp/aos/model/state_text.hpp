@@ -1,7 +1,6 @@
 // Writes a state as one line of text and reads it back, for beliefs that outlive their process.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "aos/model/reflection.hpp"

@@ -1,8 +1,6 @@
 // States as the engine holds them: blocks of bytes that only the compiled model can read.
 #pragma once
 
-#include <new>
-
 #include "aos/model/model_table.hpp"
 
 namespace aos {

@@ -1,8 +1,6 @@
 // Observations by number. If skills share the name of a response, it is the same observation to the robot.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <unordered_map>
 
 #include "aos/base/list.hpp"

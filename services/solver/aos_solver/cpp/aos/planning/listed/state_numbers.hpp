@@ -4,9 +4,7 @@
 // Most words of a state are the same in all states. These words are kept once, and only the others for each state.
 #pragma once
 
-#include <iterator>
 #include <optional>
-#include <utility>
 
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"

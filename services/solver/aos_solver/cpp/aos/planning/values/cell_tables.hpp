@@ -6,7 +6,6 @@
 // examples has its own weights, so that a choice by one half can be valued by the other.
 #pragma once
 
-#include <algorithm>
 #include <array>
 
 #include "aos/model/values.hpp"

@@ -2,9 +2,6 @@
 // Geffner, 2012).
 #pragma once
 
-#include <algorithm>
-#include <utility>
-
 #include "aos/base/mixed.hpp"
 
 namespace aos {
