@@ -51,6 +51,7 @@ class OptionRegret {
   // Lets a robot find out the state at this price for each nat, or only which way is best, so that it never loses more by not knowing it. What is
   // told by tests together counts then, where each alone leaves the best options what they are.
   void set_price(double price, bool of_ways) {
+    if (price == price_ && of_ways == prices_ways_) return;
     price_ = price;
     prices_ways_ = of_ways;
     regret_ = after(belief_.weights());

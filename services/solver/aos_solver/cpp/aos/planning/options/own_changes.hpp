@@ -68,17 +68,33 @@ class OwnChanges {
 
  private:
   void compare(std::size_t variables) {
-    for (std::size_t i = 0; i <= variables; ++i) {
-      const auto value = [&](std::size_t a) { return i < variables ? after_[a * variables + i] : ends_[a]; };
-      const std::uint64_t before = i < variables ? start_[i] : 0;
-      const std::uint64_t by_itself = value_in_common(value, moves_.size(), before);
-      if (i < variables && by_itself != before) is_worlds_[i] = true;
-      for (std::size_t a = 0; a < moves_.size(); ++a) {
+    const std::size_t actions = moves_.size();
+    const std::uint64_t by_most = value_in_common([&](std::size_t a) { return ends_[a]; }, actions, 0);
+    const std::uint64_t ending = leaves_all(variables) ? 0 : by_most;
+    // What an action does that ends the mission says nothing of the world.
+    std::vector<std::size_t> alike;
+    for (std::size_t a = 0; a < actions; ++a) {
+      if (ends_[a] == ending) alike.push_back(a);
+      else moves_[a] = true;
+    }
+    for (std::size_t i = 0; i < variables; ++i) {
+      const auto value = [&](std::size_t a) { return after_[a * variables + i]; };
+      const std::uint64_t by_itself = value_in_common([&](std::size_t n) { return value(alike[n]); }, alike.size(), start_[i]);
+      if (by_itself != start_[i]) is_worlds_[i] = true;
+      for (std::size_t a = 0; a < actions; ++a) {
         if (value(a) == by_itself) continue;
         moves_[a] = true;
-        if (i < variables) is_changed_[i] = true;
+        is_changed_[i] = true;
       }
     }
+  }
+
+  // Whether an action leaves the state as it was, so that the world does not end the mission.
+  bool leaves_all(std::size_t variables) const {
+    for (std::size_t a = 0; a < moves_.size(); ++a) {
+      if (ends_[a] == 0 && std::equal(start_.begin(), start_.end(), after_.begin() + a * variables)) return true;
+    }
+    return false;
   }
 
   bool earns_anyway_ = false;
