@@ -15,9 +15,11 @@ constexpr std::uint64_t simulations = 2000;
 // A world whose states cannot be listed, and which counts its steps.
 struct Unlisted : TableModel {
   inline static std::uint64_t steps = 0;
+  inline static std::uint64_t with_texts = 0;  // whose texts are remembered
 
   static aos::Step step(State& state, int action, aos::Sampler& random) {
     ++steps;
+    with_texts += aos::remembers_texts;
     return TableModel::step(state, action, random);
   }
   static aos::Step step(State&, int, aos::Enumerator&) { throw aos::NotEnumerable{"there is a continuous draw"}; }
@@ -37,12 +39,12 @@ double steps_of(aos::Planner<Unlisted>& planner, const aos::Belief<Unlisted>& be
   aos::Sampler random{1};
   aos::Choosing choosing;
   planner.prepare(question, random, choosing);
-  Unlisted::steps = 0;
+  Unlisted::steps = Unlisted::with_texts = 0;
   planner.search(question, random, choosing.why);
   return static_cast<double>(Unlisted::steps);
 }
 
-TEST("POMCP and DESPOT take as many steps of a model that cannot be listed, up to a factor of three") {
+TEST("POMCP and DESPOT take as many steps of a model that cannot be listed, up to a factor of three, and remember no texts") {
   const units::Problem tiger = units::tiger();
   Unlisted::take(tiger);
   aos::Sampler random{1};
@@ -53,8 +55,10 @@ TEST("POMCP and DESPOT take as many steps of a model that cannot be listed, up t
   aos::Pomcp<Unlisted> pomcp{space, values, missions};
   aos::Despot<Unlisted> despot{space, values, missions};
   const double of_pomcp = steps_of(pomcp, belief);
+  EXPECT_EQUAL(Unlisted::with_texts, 0u);
   const double of_despot = steps_of(despot, belief);
   EXPECT(of_pomcp < 3 * of_despot);
+  EXPECT_EQUAL(Unlisted::with_texts, 0u);
   EXPECT(of_despot < 3 * of_pomcp);
 }
 

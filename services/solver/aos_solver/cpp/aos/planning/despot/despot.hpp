@@ -68,6 +68,7 @@ class Despot final : public TreePlanner<Model> {
 
  protected:
   std::uint64_t search_tree(const Question<Model>& question, Sampler& random, std::string& /*why*/) override {
+    const ForgottenTexts forgotten;
     const Belief<Model>& belief = question.belief;
     const Budget budget = question.budget;
     using Seconds = std::chrono::duration<double>;

@@ -80,6 +80,7 @@ class SearchThreads {
                    PlanningClock::time_point start, Sampler& random, int first, FunctionRef<bool()> is_over) {
     constexpr std::uint64_t between_looks = 64;
     constexpr Operations start_cost = 30;
+    const ForgottenTexts forgotten;
     Work done;
     try {
       const bool has_limit = budget.simulations > 0 || budget.seconds <= 0;

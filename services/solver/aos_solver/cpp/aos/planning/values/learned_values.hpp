@@ -32,6 +32,7 @@ class LearnedValues final : public StateValues<Model> {
   bool prepare(const Belief<Model>& belief, int horizon, Sampler& random) {
     if (has_tried_) return is_usable_;
     if (Model::action_count() == 0 || belief.probability_of(Ending::running) <= 0) return false;
+    const ForgottenTexts forgotten;
     has_tried_ = true;
     horizon_ = horizon;
     const bool are_learned = std::any_of(std::begin(learning_efforts), std::end(learning_efforts), [&](const LearningEffort& effort) {
