@@ -22,7 +22,17 @@ class Route(NamedTuple):
 
 _UNLISTED = ("lists", "near_states", "wide_values")
 _ROLLED_OUT = (*_UNLISTED, "options", "learned_values")
-_OPTIONS = ("enough_ways", "tests_first", "plain_plans", "retries", "detours", "alike_states", "twins")
+_OPTIONS = (
+    "enough_ways",
+    "tests_first",
+    "plain_plans",
+    "retries",
+    "detours",
+    "alike_states",
+    "twins",
+    "sequels",
+    "past_ends",
+)
 _SAVINGS = ("savings", "saving_lookahead", "saving_rollouts")
 _SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree")
 

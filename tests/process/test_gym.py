@@ -210,5 +210,5 @@ def test_what_the_option_sets_wrongly_is_told_at_the_option():
         "drnik=1",
     ]
     told = finished(*command).stderr
-    assert told.startswith("--set:")
+    assert told.startswith("--set drnik=1: error[AOS146]")
     assert "drnik" in told

@@ -125,6 +125,37 @@ async def test_blocks_in_each_others_way_are_taken_down_though_grips_slip():
     assert run.discounted_return > 50
 
 
+async def test_an_end_that_pays_hides_no_way_to_more():
+    """Each of four letters pays 7 at its place. To park pays 2 at once, and a search for ways stops there."""
+    mail = BundleWriter(
+        "mail",
+        """horizon: 40
+discount: 0.98
+state_variable: int at
+state_variable: double charge
+state_variable: bool given []
+code:
+state.given.assign(5, false);
+state_variable: bool has_parked
+initial_belief:
+state.charge = AOS.SampleUniform(40, 60);
+reward_code:
+if (state.has_parked) __isGoalState = true;
+""",
+    )
+    drive = "__reward = -0.4;\nstate__.at = to;\nstate__.charge -= AOS.SampleUniform(0.5, 2);\n"
+    mail.skill("drive", drive + "__moduleResponse = there;", over={"to": "5"})
+    give = "__reward = state.at > 0 && !state.given[state.at] && state.charge > 0 ? 7 : -2;\n"
+    mail.skill("give", give + "state__.given[state.at] = true;\n__moduleResponse = given;")
+    mail.skill("park", "__reward = 2;\nstate__.has_parked = true;\n__moduleResponse = parked;")
+    async with engine_of_text(mail.files) as engine:
+        plan = await engine.plan(simulations=1000, seed=1, planner="auto")
+        run = await simulated(engine, 1000, goal_probability=1, step_limit=30)
+    assert plan.planner == "options"
+    assert run.discounted_return > 20
+    assert run.actions[-1] == "park"
+
+
 async def test_a_robot_whose_battery_ends_is_not_led_by_what_intruders_pay():
     """Intruders come by themselves, and cost more than they pay. No way leads through the dock."""
     patrol = BundleWriter(

@@ -74,7 +74,7 @@ class ScriptedDraws {
 struct ScriptedModel {
   std::size_t state_bytes;
   void (*prepare)();
-  const aos::List<GroundedAction>* actions;
+  const std::vector<GroundedAction>* actions;
   std::span<const SkillFacts> skills;
   void (*initial)(void* state, ScriptedDraws& draws);
   Step (*step)(void* state, int action, ScriptedDraws& draws);

@@ -1,7 +1,7 @@
 // What options earn from each of some states, and what a robot earns that takes the best of them for given weights of the
 // states.
 //
-// Options whose changes do not touch each other follow one another, those with the highest income first. Where an option
+// Options whose changes do not touch each other follow one another where they still earn something, those with the highest income first. Where an option
 // may end the mission, what follows counts as far as the mission goes on, since its end is always known. Nothing else
 // that is observed on the way counts.
 #pragma once
@@ -10,6 +10,7 @@
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
+#include "aos/planning/options/option_sequels.hpp"
 #include "aos/planning/options/own_changes.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
@@ -23,6 +24,7 @@ class OptionGains {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
   // Takes each option from each state. What changes by itself touches nothing. Options for which there is no time earn nothing.
+  // Of the steps a share is kept for trying later which options can follow another.
   void measure(const auto& library, const List<State>& states, const OwnChanges<Model>& changes, double& steps, Sampler& random) {
     const List<Option>& options = library.options();
     const LeafCells<Model>& cells = library.cells();
@@ -52,7 +54,12 @@ class OptionGains {
     for (std::size_t o = 0; o < options.size(); ++o) {
       for (std::size_t other = 0; other < options.size(); ++other) touches_[o * options.size() + other] = touch(o, other);
     }
+    // Where conditions are counted, an option earns by what others have done before it.
+    sequels_.begin(options, states, earned_, retries_, library.clock(), library.counts() ? 0 : share_of_sequels * steps, random);
   }
+
+  // The steps that are kept for that and are not taken yet.
+  double kept_steps() const { return sequels_.left(); }
 
   std::size_t size() const { return discounts_.size(); }
   double discount(std::size_t option) const { return discounts_[option]; }
@@ -87,6 +94,7 @@ class OptionGains {
 
  private:
   static constexpr int tries = 2;     // of each option from each state
+  static constexpr double share_of_sequels = 0.2;  // of the steps that are left
   static constexpr int max_ends = 4;  // options one after the other that may end the mission
   static constexpr double negligible = 1e-6;
 
@@ -129,7 +137,7 @@ class OptionGains {
     chosen_.clear();
     for (const Candidate& candidate : candidates_) {
       if (ends_[candidate.option]) continue;
-      if (std::ranges::any_of(chosen_, [&](std::size_t o) { return touches(o, candidate.option); })) continue;
+      if (std::ranges::any_of(chosen_, [&](std::size_t o) { return cannot_follow(candidate.option, o); })) continue;
       chosen_.push_back(candidate.option);
       used_[candidate.option] = true;
       sum += discount * candidate.earned;
@@ -178,7 +186,7 @@ class OptionGains {
   }
   // An option that fails to end the mission leaves the others as they were.
   bool cannot_follow(std::size_t option, std::size_t before) const {
-    return option == before || (!ends_[before] && touches(option, before));
+    return option == before || (!ends_[before] && (touches(option, before) || !sequels_.can_follow(option, before)));
   }
 
   const List<Option>* options_ = nullptr;
@@ -193,6 +201,7 @@ class OptionGains {
   std::vector<bool> touches_;               // [option * options + option]
   List<std::uint64_t> before_;
   List<std::uint64_t> after_;
+  mutable OptionSequels<Model> sequels_;
   mutable std::vector<bool> used_;
   mutable List<Weighted> support_;
   mutable List<Candidate> candidates_;

@@ -5,6 +5,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/backoff.hpp"
 #include "aos/planning/options/best_end.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_gains.hpp"
@@ -37,7 +38,10 @@ class OptionLibrary {
   bool earns_at_once(int action) const { return std::ranges::find(options_, Option{action}) != options_.end(); }
 
   // Begins a mission.
-  void start_over() { counts_ = false; }
+  void start_over() {
+    counts_ = false;
+    past_ends_ = {};
+  }
   // Forgets all options, and finds what variables the missions of this belief change.
   void prepare(const Belief<Model>& belief, Sampler& random) {
     options_.clear();
@@ -51,20 +55,27 @@ class OptionLibrary {
   double extend(const SampledBelief<Model>& belief, double& steps, Sampler& random) {
     double found = 0;
     List<State> rests;
+    List<State> ended;  // by the first option that was taken
     for (std::size_t k = 0; k < belief.size(); ++k) {
       State state = belief.states()[k];
       const bool has_end = !counts_ && is_left(steps) && add_best_end(state, steps, random);
-      bool has_way = !counts_ && (follow(state, steps, random) || has_end);
-      if (!has_way && is_left(steps) && add_from(state, steps, random)) has_way = counts_ || follow(state, steps, random);
+      std::size_t followed = counts_ ? 0 : follow(state, steps, random);
+      bool has_way = followed > 0 || has_end;
+      if (!has_way && is_left(steps) && add_from(state, steps, random)) {
+        followed = counts_ ? 0 : follow(state, steps, random);
+        has_way = counts_ || followed > 0;
+      }
       if (!has_way) continue;
       found += belief.weights()[k];
       if (!counts_ && Model::ending(state) == Ending::running) rests.push_back(state);
+      else if (followed == 1) ended.push_back(belief.states()[k]);
     }
+    if (switches::past_ends) extend_past_ends(ended, steps, random);
     const std::size_t stride = std::max<std::size_t>(rests.size() / searched_rests, 1);
     for (std::size_t i = 0; i < rests.size(); i += stride) {
       State& rest = rests[i];
       while (is_left(steps) && Model::ending(rest) == Ending::running && add(OptionSearch<Model>{searched_cells_, clock_, retries(), false}.narrow(rest, steps, random), max_options)) {
-        if (!follow(rest, steps, random)) break;
+        if (follow(rest, steps, random) == 0) break;
       }
     }
     return found;
@@ -91,6 +102,7 @@ class OptionLibrary {
   static constexpr std::size_t max_options = 256;
   static constexpr std::size_t many_options = 64;
   static constexpr std::size_t searched_rests = 8;  // states where the known options end
+  static constexpr double of_past_ends = 0.25;      // of the steps that are left
   static constexpr std::size_t longest = 40;        // options in a row
 
   bool is_left(double steps) const { return steps > 0 && !clock_.is_over(); }
@@ -98,6 +110,22 @@ class OptionLibrary {
   // The same for those from a state. Of ways that were searched for by conditions no rests are added.
   bool add_from(const State& state, double& steps, Sampler& random) {
     return add(OptionSearch<Model>{searched_cells_, clock_, retries(), counts_}.from(state, steps, random), counts_ ? 1 : max_options);
+  }
+
+  // An end that pays hides what can be earned before it, as each search stops at the first reward. From some of the states where that happens ways are
+  // searched for that go on.
+  void extend_past_ends(const List<State>& ended, double& steps, Sampler& random) {
+    if (ended.empty() || !past_ends_.is_due()) return;
+    double left = of_past_ends * steps;
+    steps -= left;
+    const std::size_t known = options_.size();
+    const std::size_t stride = std::max<std::size_t>(ended.size() / searched_rests, 1);
+    for (std::size_t i = 0; i < ended.size() && is_left(left); i += stride) {
+      add(OptionSearch<Model>{searched_cells_, clock_, retries(), false}.past_ends(ended[i], left, random), max_options);
+    }
+    steps += left;
+    if (options_.size() > known) past_ends_.succeed();
+    else past_ends_.fail();
   }
 
   // Adds the way that earns most before an end that can be had at once. Returns whether there is one.
@@ -112,9 +140,9 @@ class OptionLibrary {
     return !found.empty();
   }
 
-  // Takes options that earn something, the best first, until none is left. Returns whether there was one.
-  bool follow(State& state, double& steps, Sampler& random) const {
-    bool has_found = false;
+  // Takes options that earn something, the best first, until none is left. Returns how many there were.
+  std::size_t follow(State& state, double& steps, Sampler& random) const {
+    std::size_t followed = 0;
     for (std::size_t i = 0; i < longest && Model::ending(state) == Ending::running && is_left(steps); ++i) {
       const Option* best = nullptr;
       double most = 0;
@@ -127,10 +155,10 @@ class OptionLibrary {
         best = &option;
       }
       if (best == nullptr) break;
-      has_found = true;
+      ++followed;
       taken_option<Model>(*best, state, random, retries());
     }
-    return has_found;
+    return followed;
   }
 
   const DecisionClock& clock_;
@@ -139,6 +167,7 @@ class OptionLibrary {
   RunningDown<Model> running_down_;
   List<Option> options_;
   bool counts_ = false;
+  Backoff past_ends_;
 };
 
 }

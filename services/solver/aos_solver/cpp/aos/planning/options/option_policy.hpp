@@ -76,7 +76,7 @@ class OptionPolicy {
     choose_moves(barred);
     regret_.begin();
     const double kept = was_idle_ ? of_detours : 0;
-    double left = (1 - kept) * affordable_ - taken_;
+    double left = (1 - kept) * affordable_ - taken_ - gains_.kept_steps();
     clock_.end_at(of_all - kept);
     values_.begin(belief_, horizon, tried_options + tried_moves_.size(), left, random);
     const List<std::size_t> likely = likely_options(barred);
@@ -94,7 +94,7 @@ class OptionPolicy {
     was_idle_ = switches::detours && is_idle();
     if (was_idle_) take_detours(likely, horizon, barred, left, random);
     settle(belief.probability_of(Ending::running));
-    taken_ = affordable_ - left;
+    taken_ = affordable_ - left - gains_.kept_steps();
     return 1 + static_cast<std::uint64_t>(taken_ / horizon);
   }
 

@@ -124,6 +124,13 @@ class OptionSearch {
   }
   // The same at width 1 only.
   List<Option> narrow(const State& state, double& steps, Sampler& random) { return searched(state, 1, steps, random); }
+  // The ways from a state after which the mission goes on, the best first.
+  List<Option> past_ends(const State& state, double& steps, Sampler& random) {
+    passes_ends_ = true;
+    List<Option> found = narrow(state, steps, random);
+    if (found.empty()) found = searched(state, 2, steps, random);
+    return found;
+  }
 
  private:
   static constexpr double max_steps = 20'000;  // of the model, at each width
@@ -245,7 +252,8 @@ class OptionSearch {
   bool take(WayNode<State>& node, double discount, Sampler& random) {
     const Step step = Model::step(node.state, node.action, random);
     node.earned += discount * step.reward;
-    const bool earns = step.reward > 0 && Model::ending(node.state) != Ending::failure;
+    const Ending ending = Model::ending(node.state);
+    const bool earns = step.reward > 0 && (passes_ends_ ? ending == Ending::running : ending != Ending::failure);
     if (earns) found_.push_back({node.before, node.action, node.earned, income<Model>(node.earned, node.depth)});
     return earns;
   }
@@ -302,6 +310,7 @@ class OptionSearch {
   const DecisionClock& clock_;
   const RunningDown<Model>* retries_;
   bool counts_;
+  bool passes_ends_ = false;
   List<WayNode<State>> nodes_;
   List<Found> found_;
   SeenCells seen_;
