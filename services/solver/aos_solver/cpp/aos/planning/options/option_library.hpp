@@ -40,7 +40,7 @@ class OptionLibrary {
   // Begins a mission.
   void start_over() {
     counts_ = false;
-    past_ends_ = {};
+    past_ends_ = Backoff{};
   }
   // Forgets all options, and finds what variables the missions of this belief change.
   void prepare(const Belief<Model>& belief, Sampler& random) {
