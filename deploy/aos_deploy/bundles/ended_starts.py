@@ -19,7 +19,7 @@ def ended_start_findings(environment: Environment, belief: BeliefSummary) -> tup
     findings = Findings()
     ended = _ended(belief)
     if ended and environment.special_states:
-        tell = findings.warning if is_over(belief) else findings.remark
+        tell = findings.warning if _is_over(belief) else findings.remark
         tell("AOS150", _text(belief), environment.special_states[0].span, _HINT)
     return findings.diagnostics
 
@@ -29,12 +29,12 @@ def remark_on_start(belief: BeliefSummary) -> str:
 
     PlanningError AOS302 where there are no others, so that nothing is left to decide.
     """
-    if is_over(belief):
+    if _is_over(belief):
         raise PlanningError(_text(belief), hint=_HINT)
     return _text(belief) if _ended(belief) else ""
 
 
-def is_over(belief: BeliefSummary) -> bool:
+def _is_over(belief: BeliefSummary) -> bool:
     return sum(chance for _, chance in _ended(belief)) > 1 - _ROUNDING
 
 
