@@ -9,7 +9,7 @@ import msgspec
 
 from aos_editor.checking import shown_files
 from aos_language.assembly import Assembly, assemble
-from aos_language.check.blocks import (
+from aos_language.check.models.blocks import (
     DYNAMIC,
     MONITOR,
     Block,

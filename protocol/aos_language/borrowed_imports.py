@@ -10,9 +10,9 @@ from collections.abc import Iterable, Iterator
 import msgspec
 
 from aos_language.assembly import Assembly
-from aos_language.check.mapping_code import snippets_of_mapping
-from aos_language.check.python_names import PythonNames, imported_name, nodes_read
-from aos_language.check.python_parsed import parsed
+from aos_language.check.mappings.mapping_code import snippets_of_mapping
+from aos_language.check.mappings.python_names import PythonNames, imported_name, nodes_read
+from aos_language.check.mappings.python_parsed import parsed
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.python_syntax import names_bound_by, place_in

@@ -13,7 +13,7 @@ from aos_language.archive import is_archive_name, read_archive
 from aos_language.assembly import Assembly, assemble
 from aos_language.borrowed_imports import borrow_imports
 from aos_language.check import check
-from aos_language.check.bare_names import check_bare_names
+from aos_language.check.models.bare_names import check_bare_names
 from aos_language.findings import Findings
 from aos_language.reading.document import Document, DocumentKind
 from aos_language.reading.files import (

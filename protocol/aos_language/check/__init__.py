@@ -1,40 +1,35 @@
 """The rules across documents.
 
-`declarations` looks at names and types, `defaults` at what variables start with, `mission_parameters` at what
-a mission may set, `model_code` at the C++ of environment and skills, `responses` and `response_values` at
-what the two halves of a skill say to each other, `mapping_code` at the Python of the mappings, `enum_texts`
-at what it takes enums for, `stop_when` at what stops a skill and `python_names` at the names in it,
-`monitors` at mappings without a skill, `endings` at what ends a mission, `preconditions` at those that
-nothing keeps, `decimals` at those that rounding misses or a whole number loses, `observed_numbers` at numbers
-beside responses, `shared_code` at what all model code shares, `shared_mapping_code` at what all mappings
-share, `unused` at what nothing mentions.
+`models` has those of the C++ of environment and skills, `mappings` those of the Python of mappings. The
+files here look at both, or at neither: names, their types and meanings, endings, monitors, mission
+parameters, constraints, what skill and mapping say to each other, and what nothing mentions.
 """
 
 from aos_language.assembly import Assembly
-from aos_language.check.decimals import check_decimals
 from aos_language.check.declarations import check_environment_names, check_skill_declarations
-from aos_language.check.defaults import check_defaults
 from aos_language.check.endings import check_endings, check_goals
-from aos_language.check.given_observation import (
+from aos_language.check.mappings.mapping_code import check_low_level, check_mapping
+from aos_language.check.mappings.shared_mapping_code import check_shared_mapping_code
+from aos_language.check.mappings.stop_when import check_stop_when
+from aos_language.check.mission_parameters import check_mission_parameters
+from aos_language.check.models.decimals import check_decimals
+from aos_language.check.models.defaults import check_defaults
+from aos_language.check.models.given_observation import (
     check_given_observation,
     check_reported_variables,
     names_in_given_observation,
 )
-from aos_language.check.mapping_code import check_low_level, check_mapping
-from aos_language.check.mission_parameters import check_mission_parameters
-from aos_language.check.model_code import check_environment_code, check_skill_code
-from aos_language.check.monitors import check_monitors
-from aos_language.check.observed_numbers import (
+from aos_language.check.models.model_code import check_environment_code, check_skill_code
+from aos_language.check.models.observed_numbers import (
     check_environment_reports,
     check_observed_numbers,
     check_reports,
 )
-from aos_language.check.preconditions import check_precondition
+from aos_language.check.models.preconditions import check_precondition
+from aos_language.check.models.shared_code import check_shared_code, check_shared_names_are_used
+from aos_language.check.monitors import check_monitors
 from aos_language.check.responses import check_responses
 from aos_language.check.scope import Scope
-from aos_language.check.shared_code import check_shared_code, check_shared_names_are_used
-from aos_language.check.shared_mapping_code import check_shared_mapping_code
-from aos_language.check.stop_when import check_stop_when
 from aos_language.check.unused import check_unused_locals, check_unused_variables
 from aos_language.findings import Findings
 from aos_language.local_types import reported_variables

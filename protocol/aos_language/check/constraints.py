@@ -6,8 +6,8 @@ A constraint speaks of states and actions that the project has, a condition of t
 from collections.abc import Iterable, Sequence
 
 from aos_language.assembly import Assembly
-from aos_language.check.blocks import Block, Role
-from aos_language.check.model_code import check_block
+from aos_language.check.models.blocks import Block, Role
+from aos_language.check.models.model_code import check_block
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.snippets import Access, Cpp, read_cpp_expression, strip_comments
 from aos_language.cpp.tokens import line_and_column

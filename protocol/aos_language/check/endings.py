@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable
 
-from aos_language.check.blocks import DYNAMIC, SPECIAL, assignment_blocks
+from aos_language.check.models.blocks import DYNAMIC, SPECIAL, assignment_blocks
 from aos_language.findings import Findings
 from aos_protocol.documents import Environment, SkillModel, SpecialState
 

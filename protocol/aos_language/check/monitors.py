@@ -1,10 +1,10 @@
 """Monitors: each has a model in the environment document and a mapping, which say the same responses."""
 
 from aos_language.assembly import Assembly
-from aos_language.check.mapping_code import check_mapping
+from aos_language.check.mappings.mapping_code import check_mapping
+from aos_language.check.mappings.stop_when import check_stop_when, tells_of_stops
 from aos_language.check.responses import check_responses
 from aos_language.check.scope import Scope
-from aos_language.check.stop_when import check_stop_when, tells_of_stops
 from aos_language.check.unused import check_unused_locals
 from aos_language.findings import Findings
 from aos_protocol.documents import AbstractionMapping, LocalSource, MonitorModel, SkillModel, Snippet

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from difflib import get_close_matches
 
-from aos_language.check.blocks import DYNAMIC, Block, assignment_blocks, read_block
-from aos_language.check.response_values import check_response_values
+from aos_language.check.models.blocks import DYNAMIC, Block, assignment_blocks, read_block
+from aos_language.check.models.response_values import check_response_values
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.keywords import SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Cpp, DeclarationKind, Mention

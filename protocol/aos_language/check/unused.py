@@ -4,7 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterable
 
-from aos_language.check.blocks import environment_blocks, skill_blocks
+from aos_language.check.models.blocks import environment_blocks, skill_blocks
 from aos_language.findings import Findings
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, SkillModel, Snippet
 

@@ -5,14 +5,14 @@ import keyword
 import re
 from collections.abc import Iterable, Iterator
 
-from aos_language.check import python_names
-from aos_language.check.enum_texts import check_enum_texts
-from aos_language.check.input_fields import check_input_fields
-from aos_language.check.python_parsed import parsed
-from aos_language.check.result_order import check_result_order
-from aos_language.check.rule_gaps import check_rule_gaps
+from aos_language.check.mappings import python_names
+from aos_language.check.mappings.enum_texts import check_enum_texts
+from aos_language.check.mappings.input_fields import check_input_fields
+from aos_language.check.mappings.python_parsed import parsed
+from aos_language.check.mappings.result_order import check_result_order
+from aos_language.check.mappings.rule_gaps import check_rule_gaps
+from aos_language.check.mappings.taken_away import check_taken_away
 from aos_language.check.scope import Scope
-from aos_language.check.taken_away import check_taken_away
 from aos_language.findings import Findings
 from aos_language.local_types import ELEMENTS, OF_SKILL, local_type
 from aos_language.python_syntax import own_scope, place_in, tree_of

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from aos_language.check.blocks import DYNAMIC, Block, environment_blocks, read_block, skill_blocks
+from aos_language.check.models.blocks import DYNAMIC, Block, environment_blocks, read_block, skill_blocks
 from aos_language.findings import Findings
 from aos_language.local_types import local_type, reported_variables
 from aos_language.observed import OBSERVED, ReportedNumber, misuses_of, reported_numbers, reports_in

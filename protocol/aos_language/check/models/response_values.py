@@ -6,7 +6,7 @@ C++ takes both in silence: the first as a place in the list of responses, the se
 import re
 from collections.abc import Iterable
 
-from aos_language.check.blocks import Block
+from aos_language.check.models.blocks import Block
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.snippets import Cpp
 from aos_language.cpp.tokens import line_and_column

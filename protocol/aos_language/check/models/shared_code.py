@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable
 
-from aos_language.check.blocks import SHARED, environment_blocks, skill_blocks
+from aos_language.check.models.blocks import SHARED, environment_blocks, skill_blocks
 from aos_language.check.scope import Scope
 from aos_language.cpp.keywords import CPP_KEYWORDS, SPECIAL_NAMES
 from aos_language.cpp.shared import SharedName

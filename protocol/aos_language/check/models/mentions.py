@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable, Iterator, Set
 
-from aos_language.check.blocks import Block, titles_with
+from aos_language.check.models.blocks import Block, titles_with
 from aos_language.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
 from aos_language.cpp.absent import without_null
 from aos_language.cpp.bound import bound_paths, changes_bound

@@ -2,7 +2,7 @@
 
 import ast
 
-from aos_language.check.python_names import nodes_read
+from aos_language.check.mappings.python_names import nodes_read
 from aos_language.findings import Findings
 from aos_language.python_syntax import names_bound_by, place_in
 from aos_protocol.documents import Snippet

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import msgspec
 
 from aos_language.assembly import Assembly
-from aos_language.check.blocks import Block, environment_blocks, read_block, skill_blocks
+from aos_language.check.models.blocks import Block, environment_blocks, read_block, skill_blocks
 from aos_language.check.scope import Scope
 from aos_language.cpp.keywords import CPP_KEYWORDS, OUR_NAMES, SPECIAL_NAMES
 from aos_language.cpp.snippets import Access

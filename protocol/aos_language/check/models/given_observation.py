@@ -1,6 +1,6 @@
 """Code for a state given an observation against the local variables of the mapping, which it may name."""
 
-from aos_language.check.blocks import given_observation_blocks, read_block
+from aos_language.check.models.blocks import given_observation_blocks, read_block
 from aos_language.findings import Findings
 from aos_language.local_types import local_type, local_type_text, reported_variables
 from aos_protocol.documents import AbstractionMapping, Environment, SkillModel

@@ -3,9 +3,9 @@
 import ast
 from collections.abc import Iterable, Iterator
 
-from aos_language.check.mapping_code import snippets_of_mapping
-from aos_language.check.python_names import PythonNames, check_names, top_level_names
-from aos_language.check.python_parsed import parsed
+from aos_language.check.mappings.mapping_code import snippets_of_mapping
+from aos_language.check.mappings.python_names import PythonNames, check_names, top_level_names
+from aos_language.check.mappings.python_parsed import parsed
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.local_types import RESERVED_LOCAL_NAMES

@@ -3,8 +3,8 @@
 import ast
 import re
 
-from aos_language.check.python_names import PythonNames, check_names
-from aos_language.check.python_parsed import parsed
+from aos_language.check.mappings.python_names import PythonNames, check_names
+from aos_language.check.mappings.python_parsed import parsed
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.python_syntax import place_in

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from fractions import Fraction
 
-from aos_language.check.blocks import DURATION, Block, environment_blocks, read_block, skill_blocks
+from aos_language.check.models.blocks import DURATION, Block, environment_blocks, read_block, skill_blocks
 from aos_language.check.scope import STATE_COPIES, Scope, ValueType
 from aos_language.cpp.snippets import Access, Cpp, Extent, Mention
 from aos_language.findings import Findings
