@@ -9,6 +9,7 @@
 #include "aos/text/json.hpp"
 #include "bisimulation.hpp"
 #include "flat.hpp"
+#include "listed_beliefs.hpp"
 #include "point_based/online.hpp"
 #include "problem.hpp"
 #include "table_model.hpp"
@@ -43,7 +44,7 @@ class Claims {
     Planner automatic;
     Planner point_based;
     Planner tree;
-    start_numbers(start);
+    start_tables(start);
     for (int step = 0; step <= options_.steps && !exact.empty(); ++step) {
       where_ = "step " + std::to_string(step);
       check_belief(belief, exact, known_running);
@@ -51,7 +52,7 @@ class Claims {
       check_planner(aos::PlannerKind::automatic, automatic, belief, exact, known_running);
       check_planner(aos::PlannerKind::sarsop, point_based, belief, exact, known_running);
       check_planner(aos::PlannerKind::despot, tree, belief, exact, known_running);
-      check_numbers(exact);
+      check_tables(exact);
       if (step == options_.steps) break;
       const int action = random_.below(TableModel::action_count());
       aos::List<Reached> reached = plain_.reached(exact, static_cast<std::size_t>(action));
@@ -255,7 +256,14 @@ class Claims {
   }
 
   // Point-based search on the tables themselves, without the engine's way to them.
-  void start_numbers(const Mass& start) {
+  struct OnTables {
+    explicit OnTables(const aos::point_based::FlatModel& given) : model(given) {}
+    aos::point_based::FlatModel model;
+    aos::point_based::OnlineSarsop search{model};
+    listed::ListedBeliefs beliefs{model};
+  };
+
+  void start_tables(const Mass& start) {
     aos::point_based::FlatModel model;
     model.states = flat_.states();
     model.actions = flat_.actions();
@@ -292,38 +300,64 @@ class Claims {
     }
     model.observations = observations.size();
     model.starts.push_back({1, {start.begin(), start.end()}});
-    for (const int decisions : {0, problem_.horizon}) {
-      if (decisions == 0 && problem_.discount >= 1) continue;
+    constexpr double hardly_any = 0.999999;
+    const double own = model.discount;
+    for (const auto& [decisions, discount] : {std::pair{0, own}, {problem_.horizon, own}, {0, hardly_any}}) {
+      if (decisions == 0 && discount >= 1) continue;
       model.horizon = static_cast<std::size_t>(decisions);
+      model.discount = discount;
       try {
-        numbers_[decisions] = std::make_unique<aos::point_based::OnlineSarsop>(model);
+        tables_.push_back(std::make_unique<OnTables>(model));
       } catch (const std::length_error&) {
         continue;
       }
     }
+    // An action loses a million times what can be earned, in one state.
+    model.rewards[choosing_.bits() % model.rewards.size()] = -1e6 * largest_;
+    tables_.push_back(std::make_unique<OnTables>(model));
   }
 
-  void check_numbers(const Mass& exact) {
-    for (const auto& [decisions, search] : numbers_) {
-      who_ = decisions > 0 ? "point-based search on the tables" : "point-based search on the tables, without an end";
-      if (!search->move_to({exact.begin(), exact.end()})) continue;
-      search->improve(1000 * options_.simulations, [] { return false; });
-      const auto [lower, upper] = search->bounds();
+  void check_tables(const Mass& exact) {
+    for (const auto& on_tables : tables_) {
+      auto& [model, search, beliefs] = *on_tables;
+      const auto decisions = static_cast<int>(model.horizon);
+      who_ = "point-based search on the tables, discount " + number(model.discount);
+      if (!search.move_to({exact.begin(), exact.end()})) continue;
+      search.improve(1, [] { return false; });
+      check_to_the_last_digit(*on_tables, exact);
+      search.improve(1000 * options_.simulations, [] { return false; });
+      check_to_the_last_digit(*on_tables, exact);
+      if (model.discount != flat_.discount() || on_tables == tables_.back()) continue;
+      const auto [lower, upper] = search.bounds();
       check_bounds(lower, upper, exact, 1, decisions, "between " + number(lower) + " and " + number(upper));
-      const auto actions = search->action_bounds();
-      Truth& truth = truth_of(decisions);
-      for (std::size_t i = 0; i < std::min(actions.size(), max_actions); ++i) {
-        const std::size_t action = actions.size() <= max_actions ? i : choosing_.bits() % actions.size();
-        const Bracket bracket = truth.action_value(exact, action, decisions);
-        const double rounding = 1e-8 * (largest_ + std::abs(bracket.upper));
-        ++claims_;
-        if (actions[action].lower > bracket.upper + rounding || actions[action].upper < bracket.lower - rounding) {
-          fail("bounds of action " + std::to_string(action),
-               number(actions[action].lower) + " to " + number(actions[action].upper), bracket.lower, bracket.upper);
-        }
-      }
     }
     who_.clear();
+  }
+
+  // Bounds in floating point hold in floating point: rounding is part of them.
+  void check_to_the_last_digit(OnTables& on_tables, const Mass& exact) {
+    auto& [model, search, beliefs] = on_tables;
+    listed::Belief belief{exact.begin(), exact.end()};
+    listed::Real total = 0;
+    for (const auto& entry : belief) total += entry.second;
+    for (auto& entry : belief) entry.second /= total;
+    const aos::List<listed::Interval> truth = beliefs.action_values(belief, 600);
+    const aos::List<aos::point_based::ActionBounds> bounds = search.action_bounds();
+    listed::Interval best = truth.front();
+    for (std::size_t action = 0; action < bounds.size(); ++action) {
+      best.lower = std::max(best.lower, truth[action].lower);
+      best.upper = std::max(best.upper, truth[action].upper);
+      const std::string claim = "bounds of action " + std::to_string(action);
+      check_enclosed(claim, {bounds[action].lower, bounds[action].upper}, truth[action], beliefs.tolerance());
+    }
+    const auto [lower, upper] = search.bounds();
+    check_enclosed("bounds", {lower, upper}, best, beliefs.tolerance());
+  }
+  void check_enclosed(const std::string& claim, Bracket said, const listed::Interval& truth, listed::Real rounding) {
+    ++claims_;
+    if (said.lower <= said.upper && said.lower <= truth.upper + rounding && said.upper >= truth.lower - rounding) return;
+    fail(claim, number(said.lower) + " to " + number(said.upper), static_cast<double>(truth.lower),
+         static_cast<double>(truth.upper));
   }
 
   // Findings ------------------------------------------------------------
@@ -369,7 +403,7 @@ class Claims {
   double largest_ = 0;
   double allowance_ = options_.truth_seconds;
   std::map<int, Truth> truths_;  // by decisions; 0 counts none
-  std::map<int, std::unique_ptr<aos::point_based::OnlineSarsop>> numbers_;  // by decisions; 0 counts none
+  aos::List<std::unique_ptr<OnTables>> tables_;
   int claims_ = 0;
   double widest_ = 0;
   std::map<std::string, int> planners_;

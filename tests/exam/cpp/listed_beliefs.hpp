@@ -10,7 +10,7 @@
 
 #include "point_based/flat_model.hpp"
 
-namespace truth {
+namespace exam::listed {
 
 using aos::point_based::FlatModel;
 using Real = long double;
@@ -22,15 +22,14 @@ struct Interval {
   Real upper = std::numeric_limits<Real>::infinity();
 };
 
-class Reference {
+class ListedBeliefs {
  public:
-  explicit Reference(const FlatModel& model) : model_(model) {
+  explicit ListedBeliefs(const FlatModel& model) : model_(model) {
     if (model.horizon == 0) {
       seen_.push_back(best_policy_values());
       for (std::size_t action = 0; action < model.actions; ++action) {
         always_.push_back({policy_values(aos::List<std::size_t>(model.states, action))});
       }
-      random_.push_back(random_values());
     } else {
       add_layers();
     }
@@ -57,9 +56,6 @@ class Reference {
     }
     return values;
   }
-
-  // Of somebody who acts by chance.
-  Real random_value(const Belief& belief) const { return expected(random_.back(), belief); }
 
   // By so much rounding may harm the figures here, and the claims that are compared to them.
   Real tolerance() const {
@@ -111,48 +107,33 @@ class Reference {
 
   void add_layers() {
     seen_.assign(1, Values(model_.states, 0));
-    random_ = seen_;
     always_.assign(model_.actions, seen_);
     for (std::size_t left = 1; left <= model_.horizon; ++left) {
-      Values best(model_.states, -std::numeric_limits<Real>::infinity()), mean(model_.states, 0);
+      Values best(model_.states, -std::numeric_limits<Real>::infinity());
       for (std::size_t action = 0; action < model_.actions; ++action) {
         Values same(model_.states);
         for (std::size_t state = 0; state < model_.states; ++state) {
           const std::size_t row = model_.row(state, action);
           same[state] = row_value(row, always_[action].back());
           best[state] = std::max(best[state], row_value(row, seen_.back()));
-          mean[state] += row_value(row, random_.back()) / static_cast<Real>(model_.actions);
         }
         always_[action].push_back(std::move(same));
       }
       seen_.push_back(std::move(best));
-      random_.push_back(std::move(mean));
     }
   }
 
   // By elimination: exact but for rounding.
   Values policy_values(const aos::List<std::size_t>& policy) const {
-    return solved([&](std::size_t state, auto&& add) { add(model_.row(state, policy[state]), 1); });
-  }
-  Values random_values() const {
-    return solved([&](std::size_t state, auto&& add) {
-      const Real share = 1 / static_cast<Real>(model_.actions);
-      for (std::size_t action = 0; action < model_.actions; ++action) add(model_.row(state, action), share);
-    });
-  }
-
-  template <class RowsOf>
-  Values solved(RowsOf&& rows_of) const {
     const std::size_t count = model_.states;
     aos::List<Values> matrix(count, Values(count + 1, 0));
     for (std::size_t state = 0; state < count; ++state) {
       matrix[state][state] = 1;
-      rows_of(state, [&](std::size_t row, Real share) {
-        matrix[state][count] += share * model_.rewards[row];
-        for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
-          matrix[state][outcome->next] -= share * Real{model_.discount} * outcome->probability;
-        }
-      });
+      const std::size_t row = model_.row(state, policy[state]);
+      matrix[state][count] = model_.rewards[row];
+      for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
+        matrix[state][outcome->next] -= Real{model_.discount} * outcome->probability;
+      }
     }
     for (std::size_t column = 0; column < count; ++column) {
       std::size_t pivot = column;
@@ -251,7 +232,6 @@ class Reference {
   Real largest_ = 0;
   aos::List<Values> seen_;                   // by decisions left
   aos::List<aos::List<Values>> always_;    // by action, decisions left
-  aos::List<Values> random_;
   aos::List<Node> nodes_;
   std::map<aos::List<std::pair<std::uint32_t, std::uint64_t>>, std::size_t> known_;
 };
