@@ -173,6 +173,8 @@ class _World:
             if takeover is not None:
                 if takeover.model.revision <= running.revision:
                     self.faults.append(f"revision {takeover.model.revision} after {running.revision}")
+                if takeover.model.revision > self.mapped:
+                    self.faults.append(f"revision {takeover.model.revision} without the middleware")
                 self.taken.append(takeover.row.by)
                 running = takeover.model
             self.running, self.deciding = running.revision, running.engine

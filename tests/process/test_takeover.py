@@ -7,8 +7,9 @@ from hall import HALL, changed, looked, marginal, past_of, with_bell
 from models import built_text, engine_of_text
 
 from aos_protocol.errors import ModelError
-from aos_protocol.messages import Marginal
+from aos_protocol.messages import BeliefSummary, Marginal
 from aos_runtime.clock import SystemClock
+from aos_solver.child.answers.beliefs import ExportedBeliefs
 from aos_solver.child.engine import Engine
 from aos_solver.mission.models.past import Evidence, Past, updated
 from aos_solver.mission.models.takeover import REPLAY_S, RunningModel, Successor, Takeover, distances
@@ -64,6 +65,23 @@ async def test_the_same_state_is_imported():
     assert (takeover.row.by, takeover.row.moved) == ("import", {})
     # The belief is that of the documents before: 0.25 * 0.9 : 0.75 * 0.2.
     assert marginal(takeover.belief.marginals, "cat")["Attic"] == pytest.approx(0.6)
+
+
+async def test_where_the_same_state_cannot_be_imported_the_past_is_replayed():
+    async def refuse(_: ExportedBeliefs) -> BeliefSummary:
+        raise ModelError("the state does not fit")
+
+    past = past_of(looked("above"))
+    engine = await Engine.start(await built_text(changed(look=("0.9", "0.8"))), seed=1)
+    engine.import_beliefs = refuse
+    async with hall(past) as running:
+        successor = Successor(RunningModel(2, engine), SystemClock())
+        assert await successor.take_over(running, past) is None
+        takeover = await successor.take_over(running, past)
+    await engine.close()
+    assert takeover is not None
+    assert (takeover.row.by, takeover.row.steps) == ("replay", 1)
+    assert takeover.row.why == "AOS201: the state does not fit"
 
 
 async def test_another_state_is_the_posterior_of_the_new_documents_given_the_past():
