@@ -80,18 +80,20 @@ class List {
   std::size_t capacity() const { return capacity_; }
   bool empty() const { return size_ == 0; }
 
-  T& operator[](std::size_t place) { return data_[place]; }
-  const T& operator[](std::size_t place) const { return data_[place]; }
-  T& front() { return data_[0]; }
-  const T& front() const { return data_[0]; }
-  T& back() { return data_[size_ - 1]; }
-  const T& back() const { return data_[size_ - 1]; }
+  T& operator[](std::size_t place) { return data_[checked(place)]; }
+  const T& operator[](std::size_t place) const { return data_[checked(place)]; }
+  T& front() { return (*this)[0]; }
+  const T& front() const { return (*this)[0]; }
+  T& back() { return (*this)[size_ - 1]; }
+  const T& back() const { return (*this)[size_ - 1]; }
 
+  // Whether so many more elements leave all others where they are.
+  bool has_room(std::size_t more) const { return size_ + more <= capacity_; }
   void reserve(std::size_t capacity) {
     if (capacity > capacity_) grow_to(capacity);
   }
   void clear() { shrink(0); }
-  void pop_back() { shrink(size_ - 1); }
+  void pop_back() { shrink(checked(size_ - 1)); }
   void resize(std::size_t size) {
     if (size <= size_) return shrink(size);
     make_room(size - size_);
@@ -167,6 +169,14 @@ class List {
   }
 
  private:
+  // In a build with AOS_CHECKED, such as that of the engine's own tests, a place without an element ends the process.
+  std::size_t checked(std::size_t place) const {
+#ifdef AOS_CHECKED
+    if (place >= size_) std::abort();
+#endif
+    return place;
+  }
+
   template <class... Values>
   [[gnu::noinline]] T& emplace_in_more(Values&&... values) {
     T added(std::forward<Values>(values)...);  // of elements, perhaps

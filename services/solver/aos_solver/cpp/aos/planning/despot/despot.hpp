@@ -13,7 +13,6 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
-#include "aos/base/room.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -40,9 +39,9 @@ class Despot final : public TreePlanner<Model> {
   // Prepares the values of states. The first decision may take some seconds here, later ones take next to nothing.
   bool prepare(const Question<Model>& question, Sampler& /*random*/, Choosing& /*choosing*/) override {
     if (nodes_.capacity() == 0) {
-      nodes_ = with_room_for<Node>(max_node_bytes / sizeof(Node));
-      actions_ = with_room_for<ActionNode>(max_node_bytes / sizeof(ActionNode));
-      scenarios_ = with_room_for<Scenario<Model>>(max_scenario_bytes / scenario_bytes());
+      nodes_.reserve(max_node_bytes / sizeof(Node));
+      actions_.reserve(max_node_bytes / sizeof(ActionNode));
+      scenarios_.reserve(max_scenario_bytes / scenario_bytes());
     }
     evaluation_.prepare(question.belief, question.horizon);
     return true;
@@ -232,8 +231,7 @@ class Despot final : public TreePlanner<Model> {
   // Adds all actions of a node and their children. Returns false without the memory or the time for them.
   bool expand(std::uint32_t number) {
     const std::size_t max_new = action_count() * nodes_[number].scenarios;
-    const bool has_room = has_room_for(scenarios_, max_new) && has_room_for(nodes_, max_new);
-    if (!has_room || !has_room_for(actions_, action_count())) return false;
+    if (!scenarios_.has_room(max_new) || !nodes_.has_room(max_new) || !actions_.has_room(action_count())) return false;
     const std::uint32_t first_action = actions_.size();
     bool has_tried = false;
     for (std::size_t a = 0; a < action_count(); ++a) {

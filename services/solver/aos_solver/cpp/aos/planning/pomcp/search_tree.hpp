@@ -7,7 +7,7 @@
 
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
-#include "aos/base/room.hpp"
+#include "aos/base/list.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 
@@ -51,11 +51,10 @@ class SearchTree {
     double information = 0;
   };
 
-  // The nodes take at most `bytes`. Memory is only taken as nodes use it.
-  SearchTree(int action_count, std::size_t bytes)
-      : action_count_(static_cast<std::uint32_t>(action_count)),
-        histories_(with_room_for<HistoryNode>(bytes / 4 / sizeof(HistoryNode))),
-        actions_(with_room_for<ActionNode>(bytes / 4 * 3 / (sizeof(ActionNode) + sizeof(Told)))) {
+  // The nodes take at most `bytes`. The operating system provides memory as nodes use it.
+  SearchTree(int action_count, std::size_t bytes) : action_count_(static_cast<std::uint32_t>(action_count)) {
+    histories_.reserve(bytes / 4 / sizeof(HistoryNode));
+    actions_.reserve(bytes / 4 * 3 / (sizeof(ActionNode) + sizeof(Told)));
     clear();
   }
 
@@ -86,7 +85,7 @@ class SearchTree {
   // Gives a history its actions. Returns false if there is no room for them.
   bool give_actions(std::uint32_t number) {
     if (histories_[number].first_action != no_node) return true;
-    if (!has_room_for(actions_, action_count_)) return false;
+    if (!actions_.has_room(action_count_)) return false;
     histories_[number].first_action = actions_.size();
     actions_.resize(actions_.size() + action_count_);
     return true;
@@ -107,7 +106,7 @@ class SearchTree {
 
   // Adds a history after an action. Returns `no_node` if there is no room for it.
   std::uint32_t add_child(std::uint32_t action, Observation observation) {
-    if (!has_room_for(histories_, 1)) return no_node;
+    if (!histories_.has_room(1)) return no_node;
     const std::uint32_t number = histories_.size();
     histories_.push_back({.observation = observation});
     hang(action, number);
