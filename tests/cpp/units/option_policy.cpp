@@ -1,7 +1,6 @@
 // What options decide in a world that is small enough for the exact value: option_policy.hpp, option_pairs.hpp.
 #include "aos/planning/options/option_policy.hpp"
 
-#include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "check.hpp"
 #include "numbers/exact.hpp"
@@ -44,7 +43,7 @@ aos::List<aos::ExactValue> exact_values(const Belief& belief, int decisions) {
   space.reach(belief);
   const aos::ObservableValues observable{space.rows(), space.numbering(), decisions};
   aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 1'000'000}};
-  return evaluation.action_values(aos::exact_root(space, belief), decisions);
+  return evaluation.action_values(space.exact_weights_of(belief), decisions);
 }
 
 TEST("Before a robot leaves for what may be better elsewhere it looks where it is") {

@@ -1,6 +1,8 @@
 // Elements by the observation that each has, such as the scenarios or states that a group had before a step.
 #pragma once
 
+#include <span>
+
 #include "aos/base/stable_order.hpp"
 
 namespace aos {
@@ -29,6 +31,20 @@ void for_each_history(const List<Element>& elements, Visit&& visit) {
     last = end_of_history(elements, first, elements.size());
     visit(first, last);
   }
+}
+
+// Calls `visit` with the elements of each observation that so many have, and last with all others together, if there are any: a
+// robot that went by so few would know what no robot can know.
+template <class Element>
+void for_each_group(List<Element>& elements, std::size_t fewest, auto&& visit) {
+  sort_by_observation(elements, 0, elements.size());
+  List<Element> rare;
+  for_each_history(elements, [&](std::size_t first, std::size_t last) {
+    const std::span<const Element> alike{&elements[first], last - first};
+    if (alike.size() < fewest) rare.insert(rare.end(), alike.begin(), alike.end());
+    else visit(alike);
+  });
+  if (!rare.empty()) visit(std::span<const Element>{rare});
 }
 
 }

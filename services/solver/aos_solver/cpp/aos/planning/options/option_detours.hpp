@@ -6,6 +6,7 @@
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/earned.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/option_regret.hpp"
@@ -115,18 +116,17 @@ class OptionDetours {
   void weigh(const Look& look, List<OptionCandidate>& found, double& steps) const {
     constexpr double of_gain = 0.03;  // as many steps of the model take as long as to find what an option returns in a state
     const RepeatedObservation observation{look.reports};
-    double paid = look.ahead.paid, discount = look.ahead.discount;
+    Earned<Model> paid{look.ahead.paid, look.ahead.discount};
     Option way = look.ahead.way;
     for (int times = 1; times <= most_times && observation.is_listed(times); ++times) {
-      paid += discount * look.reward;
-      discount *= Model::discount;
+      paid.add(look.reward);
       way.push_back(look.action);
       double later = 0;
       observation.for_each(belief_.weights(), times, [&](double probability, const StateWeights& weights) {
         later += probability * worth(weights);
         steps -= of_gain * (gains_.size() * weights.size());
       });
-      found.push_back({way.front(), paid + discount * later, discount, "what can be observed after a detour", {}, way});
+      found.push_back({way.front(), paid.sum + paid.discount * later, paid.discount, "what can be observed after a detour", {}, way});
     }
   }
 

@@ -44,8 +44,7 @@ class OptionMoves {
   View best_view(int move, const BarredActions& barred, double& steps, Sampler& random) {
     List<State> now = belief_.states();
     List<StepReports> reports(now.size());
-    double paid = 0;
-    for (std::size_t k = 0; k < now.size(); ++k) paid += belief_.weights()[k] * step_.take(now[k], move, reports.front(), steps, random);
+    const double paid = belief_.mean([&](std::size_t k) { return step_.take(now[k], move, reports.front(), steps, random); });
     View best{move};
     double most = OptionTests<Model>::least_information;
     for (int action = 0; action < Model::action_count(); ++action) {
@@ -119,8 +118,7 @@ class OptionMoves {
         if (goes_on(k)) earned += discount * belief_.weights()[k] * step_.take(now[k], way[step], reports[step][k], steps, random);
       }
     }
-    double share = 0;
-    for (std::size_t k = 0; k < now.size(); ++k) share += goes_on(k) ? belief_.weights()[k] : 0;
+    const double share = belief_.mean(goes_on);
     if (share < 0.5) return;
     const auto last = share < 1 - 1e-9 ? RepeatedObservation{List<StepReports>{}} : RepeatedObservation::at_last(reports);
     if (!last.is_listed(1)) steps -= way.size() * OptionTests<Model>::steps_of_weighing(now.size());

@@ -109,8 +109,7 @@ class OptionPolicy {
   // Whether the world, left to itself, comes to cost more than ways earn where the state is seen. If they are followed one after
   // the other, its cost counts from where no way goes on. Ways do not tell what to do then.
   bool is_neglect_dear(int horizon, Sampler& random) {
-    double earned = 0;
-    for (std::size_t k = 0; k < belief_.size(); ++k) earned += belief_.weights()[k] * gains_.best_in(k);
+    const double earned = belief_.mean([&](std::size_t k) { return gains_.best_in(k); });
     const double lost = PlainPlans<Model>::least_decay(belief_, horizon, earned, random);
     if (lost <= earned) return false;
     clock_.end_at(of_all);

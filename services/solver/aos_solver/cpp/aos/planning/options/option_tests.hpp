@@ -5,6 +5,7 @@
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/earned.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_regret.hpp"
 #include "aos/planning/options/option_twins.hpp"
@@ -60,7 +61,10 @@ class OptionTests {
         is_whole = false;
         continue;
       }
-      const double reward = take(a, steps, random);
+      const double reward = belief_.mean([&](std::size_t k) {
+        State state = belief_.states()[k];
+        return step_.take(state, a, reports_[a][k], steps, random);
+      });
       steps -= steps_of_weighing(belief_.size());
       informations_[a] = information(belief_.weights(), reports_[a], OptionRegret<Model>::observations, random);
       if (informations_[a] <= least_information) continue;
@@ -120,26 +124,15 @@ class OptionTests {
 
   void add(List<OptionCandidate>& candidates, const Test& test, int repeats, double& steps, Sampler& random) const {
     const List<StepReports>& reports = reports_[test.action];
-    double paid = 0;
-    double discount = 1;
-    for (int i = 0; i < repeats; ++i, discount *= Model::discount) paid += discount * test.reward;
+    Earned<Model> paid;
+    for (int i = 0; i < repeats; ++i) paid.add(test.reward);
     const RepeatedObservation observation{reports};
     if (!observation.is_listed(repeats)) steps -= repeats * steps_of_weighing(belief_.size());
     const auto told = regret_.after(observation, repeats, belief_.weights(), steps, random, [&](std::size_t k, StateWeights& weights) {
       for (int i = 0; i < repeats; ++i) observe(reports, reports[k].drawn(random), weights);
     });
-    candidates.push_back({test.action, paid + discount * (regret_.value_seen() - told.regret), discount, "what can be observed", told.avoided,
-                          List<int>(static_cast<std::size_t>(repeats), test.action), regret_.now() - told.regret});
-  }
-
-  // Takes an action from all states. Returns the mean reward.
-  double take(int action, double& steps, Sampler& random) {
-    double reward = 0;
-    for (std::size_t k = 0; k < belief_.size(); ++k) {
-      State state = belief_.states()[k];
-      reward += belief_.weights()[k] * step_.take(state, action, reports_[action][k], steps, random);
-    }
-    return reward;
+    candidates.push_back({test.action, paid.sum + paid.discount * (regret_.value_seen() - told.regret), paid.discount, "what can be observed",
+                          told.avoided, List<int>(static_cast<std::size_t>(repeats), test.action), regret_.now() - told.regret});
   }
 
   const SampledBelief<Model>& belief_;

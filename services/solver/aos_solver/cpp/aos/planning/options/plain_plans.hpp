@@ -6,6 +6,7 @@
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/earned.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
 
 namespace aos {
@@ -69,24 +70,17 @@ class PlainPlans {
     SampleMean mean;
     draw_states(belief.weights(), last_tries, random, [&](std::size_t k) {
       State state = belief.states()[k];
-      double lost = 0;
-      double discount = 1;
-      for (int i = 0; i < horizon && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {
+      const auto lost = [&](std::size_t) {
         const double reward = Model::step(state, action, random).reward;
-        if (Model::ending(state) == Ending::running || Model::ending(state) == Ending::failure) lost += discount * (first - reward);
-      }
-      mean.add(lost);
+        return Model::ending(state) == Ending::running || Model::ending(state) == Ending::failure ? first - reward : 0;
+      };
+      mean.add(earned_in<Model>(horizon, state, lost).sum);
     });
     return mean.mean() - 2 * mean.error();
   }
 
   static double returned(State state, int action, int length, Sampler& random) {
-    double sum = 0;
-    double discount = 1;
-    for (int i = 0; i < length && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {
-      sum += discount * Model::step(state, action, random).reward;
-    }
-    return sum;
+    return earned_in<Model>(length, state, [&](std::size_t) { return Model::step(state, action, random).reward; }).sum;
   }
 };
 

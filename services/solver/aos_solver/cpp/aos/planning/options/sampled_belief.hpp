@@ -114,6 +114,12 @@ class SampledBelief {
   std::size_t size() const { return states_.size(); }
   const List<State>& states() const { return states_; }
   const StateWeights& weights() const { return weights_; }
+  // The mean of a number `of(k)` of each state.
+  double mean(auto&& of) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < size(); ++k) sum += weights_[k] * of(k);
+    return sum;
+  }
 
  private:
   static constexpr std::size_t most_compared = 8192;  // particles

@@ -14,6 +14,7 @@
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/coming_to_an_end.hpp"
+#include "aos/planning/earned.hpp"
 #include "aos/planning/pomcp/observation_doubts.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 #include "aos/planning/values/few_outcomes.hpp"
@@ -86,17 +87,15 @@ class InformationPrice {
     Cloud cloud = drawn(belief, random);
     State state = cloud[random.below(cloud.size())].state;
     true_state_ = state;
-    double sum = 0;
-    double discount = 1;
-    for (int left = horizon_; left > 0; --left, discount *= Model::discount) {
+    const auto take = [&](std::size_t) {
       const int action = choice(cloud, price);
       const Step step = Model::step(state, action, random);
-      sum += discount * step.reward;
-      if (Model::ending(state) != Ending::running) break;
+      if (Model::ending(state) != Ending::running) return step.reward;
       observe(cloud, action, step.observation, random);
       if (cloud.empty()) cloud.push_back({state, 1});
-    }
-    return sum;
+      return step.reward;
+    };
+    return earned_in<Model>(horizon_, state, take).sum;
   }
 
   static Cloud drawn(const Belief<Model>& belief, Sampler& random) {

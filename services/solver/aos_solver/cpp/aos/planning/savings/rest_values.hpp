@@ -10,6 +10,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/earned.hpp"
 #include "aos/planning/values/cell_tables.hpp"
 #include "aos/planning/values/random_walk.hpp"
 #include "aos/planning/values/state_cells.hpp"
@@ -120,12 +121,7 @@ class RestValues {
   // What a policy returns in so many steps, given its actions and the draws of its steps, and in fewer than the mission has
   // with what the state after them is worth.
   double returned_in(std::size_t steps, State state, auto&& choice, auto&& luck) const {
-    double sum = 0;
-    double discount = 1;
-    for (std::size_t i = 0; i < steps && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {
-      const int action = choice(state);
-      sum += discount * luck(state, action, i).reward;
-    }
+    const auto [sum, discount] = earned_in<Model>(steps, state, [&](std::size_t i) { return luck(state, choice(state), i).reward; });
     return steps < static_cast<std::size_t>(horizon_) ? sum + discount * value(state) : sum;
   }
   double returned_by(BasePolicy base, std::size_t steps, const State& start, Sampler& random) {

@@ -8,6 +8,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/earned.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
 #include "aos/planning/savings/rest_values.hpp"
@@ -105,15 +106,13 @@ class SavingIndex final : public StateValues<Model> {
 
   // The return of a mission that sees the state. With `cells` ways are looked for.
   double played(State state, const LeafCells<Model>* cells, int horizon, Sampler& random) {
-    double sum = 0;
-    double discount = 1;
     double steps = std::numeric_limits<double>::max();
-    for (int i = 0; i < horizon && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {
-      if (cells != nullptr && i % between_looks == 0) extend(*cells, state, steps, random);
+    const auto take = [&](std::size_t step) {
+      if (cells != nullptr && step % between_looks == 0) extend(*cells, state, steps, random);
       measure({state}, {1.0}, steps, random);
-      sum += discount * Model::step(state, best_action(), random).reward;
-    }
-    return sum;
+      return Model::step(state, best_action(), random).reward;
+    };
+    return earned_in<Model>(horizon, state, take).sum;
   }
   int best_action() {
     const auto best = std::ranges::max_element(incomes_);

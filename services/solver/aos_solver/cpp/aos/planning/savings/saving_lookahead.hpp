@@ -1,8 +1,7 @@
 // What an action saves in each step if the best way is taken after it, given what is then observed.
 //
-// States that tell the same belong together, and so do all with rare observations, since a robot that went by so few
-// states would know what no robot can know. Half of the states of a group choose the way, and the others tell what it
-// saves, and the other way round: the best way for a few drawn states is too good for these.
+// States that tell the same belong together, and so do all with rare observations. Half of the states of a group choose the
+// way, and the others tell what it saves, and the other way round: the best way for a few drawn states is too good for these.
 #pragma once
 
 #include "aos/draws/random.hpp"
@@ -46,15 +45,9 @@ class SavingLookahead {
     told_.clear();
     incomes_.resize(states * (ways_.size() + 1));
     for (std::size_t k = 0; k < states; ++k) take(action, k);
-    sort_by_observation(told_, 0, told_.size());
     double sum = 0;
-    rare_.clear();
-    for_each_history(told_, [&](std::size_t first, std::size_t last) {
-      const std::span<const Told> alike{&told_[first], last - first};
-      if (alike.size() < smallest_group) rare_.insert(rare_.end(), alike.begin(), alike.end());
-      else sum += of_group(alike);
-    });
-    return sum + of_group(rare_);
+    for_each_group(told_, smallest_group, [&](std::span<const Told> alike) { sum += of_group(alike); });
+    return sum;
   }
 
  private:
@@ -84,7 +77,7 @@ class SavingLookahead {
       return belief_->weights()[told.state] * incomes_[told.state * best_.size() + way];
     };
     double sum = 0;
-    for (std::size_t half = 0; half < 2 && !group.empty(); ++half) {
+    for (std::size_t half = 0; half < 2; ++half) {
       // One state alone knows nothing: it goes by itself.
       const bool is_split = group.size() > 1;
       best_.assign(ways_.size() + 1, 0);
@@ -108,7 +101,6 @@ class SavingLookahead {
   List<Rest<Model>> rests_;    // by state
   List<double> incomes_;       // [state * (ways + 1) + way], of the action at hand
   List<Told> told_;
-  List<Told> rare_;
   List<double> best_;
 };
 

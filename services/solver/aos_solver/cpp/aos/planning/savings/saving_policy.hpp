@@ -69,8 +69,7 @@ class SavingPolicy {
   std::uint64_t search(const Belief<Model>& belief, int horizon) {
     estimates_.assign(Model::action_count(), {});
     const double running = belief.probability_of(Ending::running);
-    double rest = 0;
-    for (std::size_t k = 0; k < belief_.size(); ++k) rest += belief_.weights()[k] * index_->values().value(belief_.states()[k]);
+    const double rest = belief_.mean([&](std::size_t k) { return index_->values().value(belief_.states()[k]); });
     resting_ = running * rest;
     for (const auto& [action, income] : found_) settle(action, running * (rest + income));
     return 1 + static_cast<std::uint64_t>(taken_ / horizon);

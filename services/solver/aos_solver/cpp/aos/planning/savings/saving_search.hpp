@@ -8,6 +8,7 @@
 #include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/earned.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/own_changes.hpp"
 #include "aos/planning/savings/rest_values.hpp"
@@ -23,13 +24,12 @@ class Rest {
   using State = typename Model::State;
 
   Rest(const RestValues<Model>& values, State state, std::size_t steps, const StepLuck& luck) {
-    double earned = 0;
-    double discount = 1;
-    for (std::size_t step = 0;; ++step, discount *= Model::discount) {
-      returned_.push_back(earned + discount * values.value(state));
+    Earned<Model> earned;
+    for (std::size_t step = 0;; ++step) {
+      returned_.push_back(earned.sum + earned.discount * values.value(state));
       if (step == steps + values.settling()) break;
       Sampler random = luck.of(step);
-      if (Model::ending(state) == Ending::running) earned += discount * Model::step(state, values.action(), random).reward;
+      earned.add(Model::ending(state) == Ending::running ? Model::step(state, values.action(), random).reward : 0);
     }
   }
   double returned(std::size_t steps) const { return returned_[steps]; }
@@ -41,12 +41,12 @@ class Rest {
 // What is returned by a way and by the rests after it, and what the state is worth then. So much was earned in `taken` steps before.
 template <class Model>
 double returned_along(const RestValues<Model>& values, const Option& way, typename Model::State state, const StepLuck& luck, double earned = 0, std::size_t taken = 0) {
-  double discount = std::pow(Model::discount, taken);
-  for (std::size_t step = 0; step < way.size() + values.settling() && Model::ending(state) == Ending::running; ++step, discount *= Model::discount) {
+  const auto take = [&](std::size_t step) {
     Sampler random = luck.of(taken + step);
-    earned += discount * Model::step(state, step < way.size() ? way[step] : values.action(), random).reward;
-  }
-  return earned + discount * values.value(state);
+    return Model::step(state, step < way.size() ? way[step] : values.action(), random).reward;
+  };
+  const auto [sum, discount] = earned_in<Model>(way.size() + values.settling(), state, take, {earned, std::pow(Model::discount, taken)});
+  return sum + discount * values.value(state);
 }
 
 // What a way saves against the rest.

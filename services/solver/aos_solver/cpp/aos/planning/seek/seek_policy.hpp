@@ -13,6 +13,7 @@
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/earned.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
 #include "aos/planning/values/running_down.hpp"
 #include "aos/planning/seek/seek_places.hpp"
@@ -75,8 +76,7 @@ class SeekPolicy {
     List<End>& ends = places_.ends();
     std::ranges::stable_sort(ends, [](const End& one, const End& other) { return one.reward > other.reward; });
     if (ends.size() > most_ends) ends.resize(most_ends);
-    returned_at_once_ = 0;
-    for (std::size_t k = 0; k < belief_.size(); ++k) returned_at_once_ += belief_.weights()[k] * ended(0, belief_.states()[k], random).returned;
+    returned_at_once_ = belief_.mean([&](std::size_t k) { return ended(0, belief_.states()[k], random).returned; });
   }
 
   struct Ended {
@@ -98,14 +98,11 @@ class SeekPolicy {
     return best;
   }
   double taken(State& state, const List<int>& actions, Sampler& random) {
-    double sum = 0, discount = 1;
-    for (const int action : actions) {
-      if (Model::ending(state) != Ending::running) break;
-      sum += discount * Model::step(state, action, random).reward;
-      discount *= Model::discount;
+    const auto take = [&](std::size_t step) {
       --steps_;
-    }
-    return sum;
+      return Model::step(state, actions[step], random).reward;
+    };
+    return earned_in<Model>(actions.size(), state, take).sum;
   }
 
   // Notes for each state by which tests it wins. Returns whether any does.
@@ -208,30 +205,30 @@ class SeekPolicy {
     State state = belief_.states()[k];
     List<double> weights = prior_;
     std::uint32_t place = 0;
-    double sum = 0, discount = 1;
+    Earned<Model> earned;
+    const auto end_now = [&] { return earned.sum + earned.discount * ended(place, state, random).returned; };
     for (int left = horizon_; left > 0;) {
       const Test* const test = best_test(place, weights, state, random);
-      if (test == nullptr) return sum + discount * ended(place, state, random).returned;
+      if (test == nullptr) return end_now();
       const List<int> actions = places_.way(place, test->place, test->action);
       State before = state;
       for (const int action : actions) {
         before = state;
-        sum += discount * Model::step(state, action, random).reward;
-        discount *= Model::discount;
+        earned.add(Model::step(state, action, random).reward);
         --steps_;
         --left;
-        if (Model::ending(state) != Ending::running) return sum;
+        if (Model::ending(state) != Ending::running) return earned.sum;
       }
       place = test->place;
-      if (running_down_.differ(state, before)) return sum + discount * ended(place, state, random).returned;
+      if (running_down_.differ(state, before)) return end_now();
       const double* const own = &test->own[k * test->outcomes];
       const std::size_t seen = random.choose(own, test->outcomes, 1.0);
       double all = 0;
       for (std::size_t z = 0; z < classes_; ++z) all += weights[z] *= test->odds[z * test->outcomes + seen];
-      if (!(all > 0)) return sum + discount * ended(place, state, random).returned;
+      if (!(all > 0)) return end_now();
       for (double& weight : weights) weight /= all;
     }
-    return sum;
+    return earned.sum;
   }
 
   bool is_prepared_ = false;

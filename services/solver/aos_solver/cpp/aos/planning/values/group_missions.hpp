@@ -1,9 +1,9 @@
 // Missions that are played to find what planning by values of seen states promises too much. No search draws their numbers.
 //
 // A group of states of the belief follows the action that is best on average over the group (QMDP: Littman, Cassandra and
-// Kaelbling, 1995), and splits by what is observed. States with rare observations stay together, since a policy that followed so
-// few states would know what no robot can know. Half of the states choose the actions, and the others tell what is returned: what
-// is best for a few drawn states is too good for these. A mission that plans can be expected to return as much, or more.
+// Kaelbling, 1995), and splits by what is observed. States with rare observations stay together. Half of the states choose the
+// actions, and the others tell what is returned: what is best for a few drawn states is too good for these. A mission that plans
+// can be expected to return as much, or more.
 #pragma once
 
 #include "aos/belief/belief.hpp"
@@ -159,18 +159,10 @@ class GroupMissions {
       follower.observation = step.observation;
       group_.push_back(follower);
     }
-    sort_by_observation(group_, 0, group_.size());
-    rare_.clear();
-    for_each_history(group_, [&](std::size_t start, std::size_t end) {
-      const std::span<const Follower> alike{&group_[start], end - start};
-      if (alike.size() < fewest_alike) rare_.insert(rare_.end(), alike.begin(), alike.end());
-      else add_group(alike);
+    for_each_group(group_, fewest_alike, [&](std::span<const Follower> alike) {
+      next_.insert(next_.end(), alike.begin(), alike.end());
+      next_ends_.push_back(next_.size());
     });
-    if (!rare_.empty()) add_group(rare_);
-  }
-  void add_group(std::span<const Follower> group) {
-    next_.insert(next_.end(), group.begin(), group.end());
-    next_ends_.push_back(next_.size());
   }
 
   void settle() {
@@ -199,7 +191,6 @@ class GroupMissions {
   List<Follower> next_;
   List<std::size_t> next_ends_;
   List<Follower> group_;
-  List<Follower> rare_;
   std::vector<bool> chooses_;  // by place
   List<const Follower*> choosers_;
   List<double> losses_;

@@ -14,6 +14,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/earned.hpp"
 #include "aos/planning/values/cell_tables.hpp"
 #include "aos/planning/values/random_walk.hpp"
 #include "aos/planning/values/state_cells.hpp"
@@ -224,13 +225,8 @@ class LearnedValues final : public StateValues<Model> {
 
   // The discounted return of one mission whose policy observes the state.
   double earned_by(State state, auto&& choice, Sampler& random) const {
-    double earned = 0;
-    double discount = 1;
-    for (int left = horizon_; left > 0 && Model::ending(state) == Ending::running; --left) {
-      earned += discount * Model::step(state, choice(state, left), random).reward;
-      discount *= Model::discount;
-    }
-    return earned;
+    const auto take = [&](int step) { return Model::step(state, choice(state, horizon_ - step), random).reward; };
+    return earned_in<Model>(horizon_, state, take).sum;
   }
   double earned_by_values(const State& state, Sampler& random) const {
     return earned_by(state, [&](const State& now, int left) { return best_action(now, left, random); }, random);
