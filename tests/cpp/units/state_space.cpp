@@ -1,7 +1,6 @@
 // The model as numbers and what is worked out from it: state_space.hpp, step_table.hpp, exact.hpp.
 #include "aos/planning/listed/state_space.hpp"
 
-#include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/listed/step_table.hpp"
 #include "check.hpp"
 #include "worlds.hpp"
@@ -221,16 +220,16 @@ TEST("Exact values are those that can be worked out by hand") {
   EXPECT(is_listed);
   const aos::ObservableValues observable{space.rows(), space.numbering(), 3};
   aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 1000}};
-  const auto one = evaluation.action_values(aos::exact_root(space, belief), 1);
+  const auto one = evaluation.action_values(space.exact_weights_of(belief), 1);
   EXPECT_NEAR(one[0].value, -1.0, 1e-12);
   EXPECT_NEAR(one[1].value, -45.0, 1e-12);
-  const auto two = evaluation.action_values(aos::exact_root(space, belief), 2);
+  const auto two = evaluation.action_values(space.exact_weights_of(belief), 2);
   EXPECT_NEAR(two[0].value, -1 - 0.95, 1e-12);
   EXPECT_NEAR(two[2].value, -45 - 0.95, 1e-12);
   // Listen twice; hear the same (0.745) and open the other door, or listen once more.
   const double same = 0.85 * 0.85 + 0.15 * 0.15;
   const double open = (0.85 * 0.85 * 10 - 0.15 * 0.15 * 100) / same;
-  const auto three = evaluation.action_values(aos::exact_root(space, belief), 3);
+  const auto three = evaluation.action_values(space.exact_weights_of(belief), 3);
   EXPECT_NEAR(three[0].value, -1 - 0.95 + 0.95 * 0.95 * (same * open - (1 - same)), 1e-12);
 }
 
@@ -251,7 +250,7 @@ TEST("Exact values that exceed the budget are refused, and no wrong ones given")
   aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 3}};
   bool is_refused = false;
   try {
-    evaluation.action_values(aos::exact_root(space, belief), 10);
+    evaluation.action_values(space.exact_weights_of(belief), 10);
   } catch (const aos::NotEnumerable&) {
     is_refused = true;
   }

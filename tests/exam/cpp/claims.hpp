@@ -4,7 +4,6 @@
 #include <regex>
 
 #include "aos/belief/belief.hpp"
-#include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/planners.hpp"
 #include "aos/text/json.hpp"
 #include "bisimulation.hpp"
@@ -123,7 +122,7 @@ class Claims {
       aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 3000, .work = 100'000'000}};
       try {
         aos::List<double> values;
-        for (const auto& of_action : evaluation.action_values(aos::exact_root(space, belief), decisions)) values.push_back(of_action.value);
+        for (const auto& of_action : evaluation.action_values(space.exact_weights_of(belief), decisions)) values.push_back(of_action.value);
         check_action_values("exact value of action ", values, exact, running, decisions);
       } catch (const aos::NotEnumerable&) {
         return;

@@ -65,6 +65,13 @@ class InitialBounds {
   // Sweeps end when values are known to this share of the largest reward.
   static constexpr double settled_ = 1e-6;
 
+  // Calls `use(row)` for each action of `states_`.
+  void for_each_row(auto&& use) const {
+    for (const std::uint32_t state : states_) {
+      for (std::size_t action = 0; action < model_.actions; ++action) use(model_.row(state, action));
+    }
+  }
+
   void add_layers() {
     const double actions = static_cast<double>(model_.actions);
     const bool looks = likelihoods_ * actions * static_cast<double>(model_.horizon) <= layer_operations_;
@@ -79,15 +86,13 @@ class InitialBounds {
       ActionValues below = above;
       const ActionValues& later = informed.back();
       const ActionValues& same = blind.back();
-      for (const std::uint32_t state : states_) {
-        for (std::size_t action = 0; action < model_.actions; ++action) {
-          const std::size_t row = model_.row(state, action);
-          const Estimate seen = value_of(row, [&](std::uint32_t next) { return best[next]; });
-          above[row] = looks ? informed_value(row, later, gathered) : seen.value + seen.error;
-          const Estimate again = value_of(row, [&](std::uint32_t next) { return same[model_.row(next, action)]; });
-          below[row] = again.value - again.error;
-        }
-      }
+      for_each_row([&](std::size_t row) {
+        const std::size_t action = row % model_.actions;
+        const Estimate seen = value_of(row, [&](std::uint32_t next) { return best[next]; });
+        above[row] = looks ? informed_value(row, later, gathered) : seen.value + seen.error;
+        const Estimate again = value_of(row, [&](std::uint32_t next) { return same[model_.row(next, action)]; });
+        below[row] = again.value - again.error;
+      });
       for (const std::uint32_t state : states_) best[state] = best_of(above, state);
       informed.push_back(std::move(above));
       blind.push_back(std::move(below));
@@ -123,27 +128,21 @@ class InitialBounds {
   ActionValues endless_informed_values() const {
     const List<double> values = endless_mdp_values();
     ActionValues above(model_.states * model_.actions, 0.0);
-    for (const std::uint32_t state : states_) {
-      for (std::size_t action = 0; action < model_.actions; ++action) {
-        const std::size_t row = model_.row(state, action);
-        const Estimate seen = value_of(row, [&](std::uint32_t next) { return values[next]; });
-        above[row] = seen.value + seen.error;
-      }
-    }
+    for_each_row([&](std::size_t row) {
+      const Estimate seen = value_of(row, [&](std::uint32_t next) { return values[next]; });
+      above[row] = seen.value + seen.error;
+    });
     Gathered gathered;
     gathered.slot_of.assign(model_.observations, 0);
     const double sweeps = std::max(operations_ / (likelihoods_ * static_cast<double>(model_.actions) + 1), 1.0);
     double change = std::numeric_limits<double>::infinity();
     for (double done = 0; done < sweeps && change > settled_ * scale_; ++done) {
       change = 0;
-      for (const std::uint32_t state : states_) {
-        for (std::size_t action = 0; action < model_.actions; ++action) {
-          const std::size_t row = model_.row(state, action);
-          const double tighter = informed_value(row, above, gathered);
-          change = std::max(change, above[row] - tighter);
-          above[row] = std::min(above[row], tighter);
-        }
-      }
+      for_each_row([&](std::size_t row) {
+        const double tighter = informed_value(row, above, gathered);
+        change = std::max(change, above[row] - tighter);
+        above[row] = std::min(above[row], tighter);
+      });
     }
     return above;
   }

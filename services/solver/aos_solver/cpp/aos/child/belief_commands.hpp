@@ -161,11 +161,7 @@ class BeliefCommands {
   void export_belief(JsonWriter& json, const Command& command) const {
     const LeftOut<Model> left_out;
     const bool is_whole = command.flag("is_whole");
-    const auto all = believed_.beliefs();
-    const bool has_number = command.optional_text("number").has_value();
-    const auto number = has_number ? command.number<std::size_t>("number") : 0;
-    if (number >= all.size()) throw BadCommand{"there is no such belief"};
-    save_belief(json, has_number ? *all[number] : belief_for(command), command.number<std::size_t>("first"),
+    save_belief(json, command.optional_text("number") ? belief_by_number(command) : belief_for(command), command.number<std::size_t>("first"),
                 [&](const State& state) { return is_whole ? state : left_out.rest_of(state); },
                 command.optional_text("max_bytes") ? command.number<std::size_t>("max_bytes") : max_answer_bytes);
   }
@@ -190,10 +186,7 @@ class BeliefCommands {
 
   // Writes the joint distribution of some variables under the belief with this `number`; see projected_beliefs.hpp.
   void export_joint(JsonWriter& json, const Command& command) const {
-    const auto all = believed_.beliefs();
-    const auto number = command.number<std::size_t>("number");
-    if (number >= all.size()) throw BadCommand{"there is no such belief"};
-    save_joint(json, command, *all[number]);
+    save_joint(json, command, belief_by_number(command));
   }
 
   // Takes over a belief, or one of several: these come one after the other, and with the last of them (`left` is 0) all
@@ -251,6 +244,12 @@ class BeliefCommands {
   static const Belief<Model>& belief_for(const Command& command, const Hypotheses& believed) {
     const bool is_cautious = command.optional_text("cautious") && command.flag("cautious");
     return is_cautious && believed.cautious() != nullptr ? *believed.cautious() : believed.belief();
+  }
+  const Belief<Model>& belief_by_number(const Command& command) const {
+    const auto all = believed_.beliefs();
+    const auto number = command.number<std::size_t>("number");
+    if (number >= all.size()) throw BadCommand{"there is no such belief"};
+    return *all[number];
   }
   // Each change draws from a stream of its own, so that it comes out the same whatever this process did before.
   void begin_change(const Command& command) {

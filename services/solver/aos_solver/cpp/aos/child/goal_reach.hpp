@@ -4,9 +4,8 @@
 #include "aos/base/clock.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
+#include "aos/child/reachability.hpp"
 #include "aos/draws/random.hpp"
-#include "aos/model/blame.hpp"
-#include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/values/random_walk.hpp"
 
 namespace aos {
@@ -25,30 +24,14 @@ class GoalReach {
     }
     if (running.empty()) return;
     const auto of_running = Belief<Model>::of(Cloud<Model>{running, {}, {}}, belief.error_bound(), belief.is_drawn());
-    if (!list(of_running, seconds)) walk(running, seconds, horizon, random);
+    const Reachability<Model> reached{of_running, seconds, /*only_goal=*/true};
+    is_reachable_ = reached.has_goal();
+    if (!is_reachable_ && !reached.is_whole()) walk(running, seconds, horizon, random);
   }
 
   bool is_reachable() const { return is_reachable_; }
 
  private:
-  // Returns whether this tells everything.
-  bool list(const Belief<Model>& running, double seconds) {
-    const auto latest = processor_time() + std::chrono::duration<double>{seconds};
-    StateSpace<Model> space{{.states = 100'000, .bytes = std::size_t{256} << 20}};
-    try {
-      space.reach_within(running, 0);
-      while (!space.is_closed() && !space.reaches(Ending::goal)) {
-        if (processor_time() > latest) return false;
-        space.reach_within(running, 1);
-      }
-    } catch (const NotEnumerable&) {
-      blame::at(0);
-      if (!space.reaches(Ending::goal)) return false;
-    }
-    is_reachable_ = space.reaches(Ending::goal);
-    return true;
-  }
-
   void walk(const List<Particle<Model>>& running, double seconds, int horizon, Sampler& random) {
     constexpr std::size_t max_walks = 2000;
     const auto latest = processor_time() + std::chrono::duration<double>{seconds};

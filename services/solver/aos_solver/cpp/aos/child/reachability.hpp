@@ -9,18 +9,19 @@
 namespace aos {
 
 // Once it has found a goal and met the precondition of every action, the search goes on only as far as `later_limits`
-// allow: code may fail behind the first goal, too.
+// allow: code may fail behind the first goal, too. Where only the goal matters, no precondition is looked at, and the search ends
+// with the goal.
 template <class Model>
 class Reachability {
  public:
   // `seconds` are of processor time.
-  Reachability(const Belief<Model>& belief, double seconds)
-      : unmet_(Model::action_count()), is_met_(unmet_, false) {
+  Reachability(const Belief<Model>& belief, double seconds, bool only_goal = false)
+      : unmet_(only_goal ? 0 : Model::action_count()), is_met_(Model::action_count(), only_goal) {
     const auto latest = processor_time() + std::chrono::duration<double>{seconds};
     try {
-      if (!belief.is_exact()) throw NotEnumerable{"the initial belief is only known by samples"};
+      if (!only_goal && !belief.is_exact()) throw NotEnumerable{"the initial belief is only known by samples"};
       space_.reach_within(belief, 0);
-      while (look(), !space_.is_closed()) {
+      while (look(), !space_.is_closed() && !(only_goal && has_goal())) {
         if (is_done()) space_.limit(later_limits);
         if (processor_time() > latest) throw NotEnumerable{"it takes longer than allowed"};
         const std::size_t known = space_.size();

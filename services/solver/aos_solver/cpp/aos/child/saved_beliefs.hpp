@@ -43,7 +43,7 @@ Belief<Model> load_belief(double error_bound, bool is_drawn, std::string_view hi
   SavedConstants constants;
   std::size_t next = 0;
   for (; next + 1 < fields.size() && next < 2 * constant_count; next += 2) {
-    constants.add_text(fields[next], fields[next + 1]);
+    constants.add(fields[next], fields[next + 1]);
   }
   List<Particle<Model>> particles;
   for (; next + 1 < fields.size(); next += 2) {

@@ -11,9 +11,9 @@
 #include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/text/json.hpp"
+#include "numbers/exact.hpp"
 
 namespace aos {
 
@@ -27,7 +27,7 @@ class StudyCommands {
     const int horizon = horizon_of<Model>(command);
     const Belief<Model>& belief = beliefs_.belief_for(command);
     auto evaluation = evaluation_for(command, belief, horizon);
-    const auto values = evaluation.action_values(exact_root(*space_, belief), horizon);
+    const auto values = evaluation.action_values(space_->exact_weights_of(belief), horizon);
     json.begin_object().key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
       json.begin_object().member("action", Model::action_name(action));
@@ -45,7 +45,7 @@ class StudyCommands {
     RewardTerms<Model> terms;
     const int horizon = horizon_of<Model>(command);
     auto evaluation = evaluation_for(command, belief, horizon);
-    evaluation.action_values(exact_root(*space_, belief), horizon);
+    evaluation.action_values(space_->exact_weights_of(belief), horizon);
     const auto times = evaluation.occupancy(space_->weights_of(belief), action, horizon);
     for (const auto& [where, weight] : times) terms.add((*space_)[where.first], where.second, weight);
     terms.write(json);

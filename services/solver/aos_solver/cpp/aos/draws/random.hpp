@@ -104,14 +104,14 @@ class Draws {
       const auto count = static_cast<int>(std::size(weights));
       const double total = checked_total(std::data(weights), count, /*may_be_zero=*/true);
       if (1 - total <= weight_rounding) return source().choose(std::data(weights), count, total);
-      Copied copied{weights};
-      return or_none(copied, total);
-    } else {
-      Copied copied{weights};
-      const double total = checked_total(copied.weights, copied.count, /*may_be_zero=*/true);
-      if (1 - total <= weight_rounding) return source().choose(copied.weights, copied.count, total);
-      return or_none(copied, total);
     }
+    Copied copied{weights};
+    const double total = checked_total(copied.weights, copied.count, /*may_be_zero=*/true);
+    if (1 - total <= weight_rounding) return source().choose(copied.weights, copied.count, total);
+    // An index more stands for none.
+    copied.append(1 - total);
+    const int drawn = source().choose(copied.weights, copied.count, 1.0);
+    return drawn == copied.count - 1 ? -1 : drawn;
   }
 
   double SampleNormal(double mean, double deviation) {
@@ -132,7 +132,6 @@ class Draws {
   bool IsInitialized(bool value) { return value; }
 
  private:
-
   // A copy of weights, without memory of its own as long as they are few.
   struct Copied {
     template <class Weights>
@@ -159,13 +158,6 @@ class Draws {
 
   Source& source() { return static_cast<Source&>(*this); }
 
-  // Draws an index of weights that sum to less than 1, or -1.
-  int or_none(Copied& weights, double total) {
-    weights.append(1 - total);
-    const int drawn = source().choose(weights.weights, weights.count, 1.0);
-    return drawn == weights.count - 1 ? -1 : drawn;
-  }
-
   int normalised(const double* weights, int count) {
     return source().choose(weights, count, checked_total(weights, count, /*may_be_zero=*/false));
   }
@@ -182,7 +174,8 @@ class Draws {
 };
 
 // The index whose positive weight covers `place`, which is from 0 to the total of the weights.
-inline int place_in(const double* weights, int count, double place) {
+template <class Weight>
+int place_in(const Weight* weights, int count, double place) {
   int last = 0;
   for (int i = 0; i < count; ++i) {
     if (weights[i] <= 0) continue;

@@ -1,30 +1,13 @@
 // The values that a mission sets. The engine gets them when it is started, before any state is made.
 #pragma once
 
-#include <vector>
-
 #include "aos/model/reflection.hpp"
 #include "aos/model/state_text.hpp"
 
 namespace aos {
 
-// The parts of mission parameters that were set: the name, and the value as StateReader reads it.
-class MissionValues {
- public:
-  void add(std::string_view name, std::string_view value) { values_.emplace_back(name, value); }
-  bool empty() const { return values_.empty(); }
-  const std::string* find(std::string_view name) const {
-    for (const auto& [known, value] : values_) {
-      if (known == name) return &value;
-    }
-    return nullptr;
-  }
-
- private:
-  std::vector<std::pair<std::string, std::string>> values_;
-};
-
-inline MissionValues mission_values;
+// The parts of mission parameters that were set, with their values as StateReader reads them.
+inline NamedTexts mission_values;
 
 // Gives a mission parameter, or each part of it, the value that was set. What was not set stays as it is.
 template <class T>

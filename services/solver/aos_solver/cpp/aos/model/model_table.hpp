@@ -77,18 +77,24 @@ struct ModelTable {
 // The model that this executable is linked with.
 extern const ModelTable compiled_model;
 
+// The state behind a pointer.
+template <class State>
+State& state_at(void* state) { return *static_cast<State*>(state); }
+template <class State>
+const State& state_at(const void* state) { return *static_cast<const State*>(state); }
+
 template <class Model, class Random>
 constexpr DrawingFunctions<Random> drawing_functions() {
   using State = typename Model::State;
   return {
       .initial = [](void* state, Random& random) {
         ModelSource<Random> draws{random};
-        Model::initial(*static_cast<State*>(state), draws);
+        Model::initial(state_at<State>(state), draws);
         blame::over();
       },
       .step = [](void* state, int action, Random& random) {
         ModelSource<Random> draws{random};
-        const Step step = Model::step(*static_cast<State*>(state), action, draws);
+        const Step step = Model::step(state_at<State>(state), action, draws);
         blame::over();
         return step;
       },
@@ -118,42 +124,36 @@ constexpr ModelTable table_of() {
       .constraints_look_ahead = Model::constraints_look_ahead,
       .mission_parameters = Model::mission_parameters,
       .prepare = Model::prepare,
-      .equal = [](const void* left, const void* right) {
-        return *static_cast<const State*>(left) == *static_cast<const State*>(right);
-      },
-      .hash = [](const void* state) { return Model::hash(*static_cast<const State*>(state)); },
-      .visit = [](const void* state,
-                  ValueVisitor& visitor) { visit_value(*static_cast<const State*>(state), visitor); },
-      .state_text = [](const void* state) { return Model::state_text(*static_cast<const State*>(state)); },
-      .save_state = [](const void* state) { return Model::save_state(*static_cast<const State*>(state)); },
+      .equal = [](const void* left, const void* right) { return state_at<State>(left) == state_at<State>(right); },
+      .hash = [](const void* state) { return Model::hash(state_at<State>(state)); },
+      .visit = [](const void* state, ValueVisitor& visitor) { visit_value(state_at<State>(state), visitor); },
+      .state_text = [](const void* state) { return Model::state_text(state_at<State>(state)); },
+      .save_state = [](const void* state) { return Model::save_state(state_at<State>(state)); },
       .save_constants = Model::save_constants,
-      .load_state = [](void* state, std::string_view saved, const SavedConstants& constants) {
-        Model::load_state(*static_cast<State*>(state), saved, constants);
-      },
-      .spent = [](const void* state) { return Model::spent(*static_cast<const State*>(state)); },
-      .set_end = [](void* state, Ending ending,
-                    std::uint64_t spent) { Model::set_end(*static_cast<State*>(state), ending, spent); },
+      .load_state = [](void* state, std::string_view saved, const SavedConstants& constants) { Model::load_state(state_at<State>(state), saved, constants); },
+      .spent = [](const void* state) { return Model::spent(state_at<State>(state)); },
+      .set_end = [](void* state, Ending ending, std::uint64_t spent) { Model::set_end(state_at<State>(state), ending, spent); },
       .sampling = drawing_functions<Model, Sampler>(),
       .directed = drawing_functions<Model, DirectedDraws>(),
       .pass = [](void* state, DirectedDraws& random) {
         ModelSource<DirectedDraws> draws{random};
-        Model::pass(*static_cast<State*>(state), draws);
+        Model::pass(state_at<State>(state), draws);
         blame::over();
       },
       .begin = [](void* state, DirectedDraws& random) {
         ModelSource<DirectedDraws> draws{random};
-        Model::begin(*static_cast<State*>(state), draws);
+        Model::begin(state_at<State>(state), draws);
         blame::over();
       },
       .correct = [](const void* before, void* next, int action, DirectedDraws& random) {
         if constexpr (Model::has_corrections) {
           ModelSource<DirectedDraws> draws{random};
-          Model::correct(*static_cast<const State*>(before), *static_cast<State*>(next), action, draws);
+          Model::correct(state_at<State>(before), state_at<State>(next), action, draws);
         }
       },
       .meets_precondition = [](const void* state, int action, DirectedDraws& random) {
         ModelSource<DirectedDraws> draws{random};
-        const bool meets = Model::meets_precondition(*static_cast<const State*>(state), action, draws);
+        const bool meets = Model::meets_precondition(state_at<State>(state), action, draws);
         blame::over();
         return meets;
       },
@@ -161,7 +161,7 @@ constexpr ModelTable table_of() {
         if constexpr (Model::has_goal_conditions) {
           Sampler same{1};
           ModelSource<Sampler> draws{same};
-          const int met = Model::conditions_met(*static_cast<const State*>(state), draws);
+          const int met = Model::conditions_met(state_at<State>(state), draws);
           blame::over();
           return met;
         }
@@ -169,17 +169,17 @@ constexpr ModelTable table_of() {
       },
       .violations = [](const void* before, const void* next, int action) -> Violations {
         if constexpr (Model::constraint_count > 0) {
-          return Model::violations(*static_cast<const State*>(before), *static_cast<const State*>(next), action);
+          return Model::violations(state_at<State>(before), state_at<State>(next), action);
         }
         return 0;
       },
       .rollout = [](const void* state, int& left, Sampler& random) {
-        const double value = aos::rollout<Model>(*static_cast<const State*>(state), left, random);
+        const double value = aos::rollout<Model>(state_at<State>(state), left, random);
         blame::over();
         return value;
       },
       .rollout_odds = [](const void* state, double* odds, int count, Sampler& random) {
-        aos::rollout_odds<Model>(*static_cast<const State*>(state), odds, count, random);
+        aos::rollout_odds<Model>(state_at<State>(state), odds, count, random);
         blame::over();
       },
   };

@@ -82,23 +82,27 @@ constexpr Member constant_member(const char* name, const T& constant) {
   return member;
 }
 
+// Values as texts, by name.
+class NamedTexts {
+ public:
+  void add(std::string_view name, std::string_view text) { texts_.emplace_back(name, text); }
+  bool empty() const { return texts_.empty(); }
+  const std::vector<std::pair<std::string, std::string>>& texts() const { return texts_; }
+  // The text of this name; null if there is none.
+  const std::string* find(std::string_view name) const;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> texts_;
+};
+
 // The variables that were constants in the model that saved the states. Their texts are saved once and not
 // with each state.
-class SavedConstants {
- public:
-  void add(std::string_view name, AnyValue value);
+struct SavedConstants : NamedTexts {
   void add_all(std::span<const Member> members);
-  void add_text(std::string_view name, std::string_view text);
-  const std::vector<std::pair<std::string, std::string>>& texts() const { return texts_; }
 
   // Reads a variable: from these constants if it was one of them, else from the rest of a saved state.
   void read(const Member& member, void* state, StateReader& text) const;
   void read_all(std::span<const Member> members, void* state, StateReader& text) const;
-
- private:
-  const std::string* find(std::string_view name) const;
-
-  std::vector<std::pair<std::string, std::string>> texts_;
 };
 
 }

@@ -194,18 +194,19 @@ std::int64_t StateReader::next() {
   return number;
 }
 
-void SavedConstants::add(std::string_view name, AnyValue value) {
-  StateWriter text;
-  text.write(value);
-  add_text(name, text.text());
+const std::string* NamedTexts::find(std::string_view name) const {
+  const auto known = std::ranges::find(texts_, name, &std::pair<std::string, std::string>::first);
+  return known != texts_.end() ? &known->second : nullptr;
 }
 
 void SavedConstants::add_all(std::span<const Member> members) {
   for (const Member& member : members) {
-    if (member.constant != nullptr) add(member.name, AnyValue{member.constant, member.visit});
+    if (member.constant == nullptr) continue;
+    StateWriter text;
+    text.write(AnyValue{member.constant, member.visit});
+    add(member.name, text.text());
   }
 }
-void SavedConstants::add_text(std::string_view name, std::string_view text) { texts_.emplace_back(name, text); }
 
 void SavedConstants::read(const Member& member, void* state, StateReader& text) const {
   const bool is_constant = member.constant != nullptr;
@@ -220,11 +221,6 @@ void SavedConstants::read(const Member& member, void* state, StateReader& text) 
 
 void SavedConstants::read_all(std::span<const Member> members, void* state, StateReader& text) const {
   for (const Member& member : members) read(member, state, text);
-}
-
-const std::string* SavedConstants::find(std::string_view name) const {
-  const auto known = std::ranges::find(texts_, name, &std::pair<std::string, std::string>::first);
-  return known != texts_.end() ? &known->second : nullptr;
 }
 
 }

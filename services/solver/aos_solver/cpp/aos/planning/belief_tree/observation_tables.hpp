@@ -122,17 +122,7 @@ class ObservationTables {
     float probability(std::uint32_t symbol) const {
       return symbol - first < odds.size() ? odds[symbol - first] : 0.0f;
     }
-    std::uint32_t draw(Sampler& random) const {
-      double place = random.uniform();
-      std::uint32_t last = 0;
-      for (std::uint32_t i = 0; i < odds.size(); ++i) {
-        if (odds[i] <= 0) continue;
-        last = i;
-        if (place < odds[i]) break;
-        place -= odds[i];
-      }
-      return first + last;
-    }
+    std::uint32_t draw(Sampler& random) const { return first + place_in(odds.data(), static_cast<int>(odds.size()), random.uniform()); }
   };
   // A response, or a text of so many pieces, with the distributions of its numbers.
   struct Form {

@@ -24,9 +24,7 @@ class ExactSearch final : public Planner<Model> {
 
   // Bounds are prepared for a try, which takes long at the first decision only. A try that fails puts off the next ones.
   bool prepare(const Question<Model>& question, Sampler& /*random*/, Choosing& choosing) override {
-    const bool is_possible = question.is_listed && space_.lists_observations() && !space_.estimates_draws() && question.belief.is_exact();
-    if (!switches::exact || !is_possible) return false;
-    if (!tries_.is_due()) return false;
+    if (!switches::exact || !question.is_listed || space_.inexact_text(question.belief) != nullptr || !tries_.is_due()) return false;
     observable_.prepare(space_.rows(), space_.numbering(), question.horizon);
     const SearchTime time{choosing};
     const bool fits = evaluate(question.belief, question.budget, question.horizon);

@@ -143,6 +143,17 @@ class StateSpace {
     add_up_neighbours(weights, &std::pair<std::uint32_t, double>::first, &std::pair<std::uint32_t, double>::second);
     return weights;
   }
+  // Why the belief has no exact values; null if it has.
+  const char* inexact_text(const Belief<Model>& belief) const {
+    if (!lists_observations()) return numbers_are_observed;
+    if (estimates_draws()) return "draws are continuous";
+    return belief.is_exact() ? nullptr : "the belief is only known by samples";
+  }
+  // The same as `weights_of`. Throws NotEnumerable where the belief has no exact values.
+  List<std::pair<std::uint32_t, double>> exact_weights_of(const Belief<Model>& belief) const {
+    if (const char* const why = inexact_text(belief)) throw NotEnumerable{why};
+    return weights_of(belief);
+  }
 
  private:
   // The largest expected reward, earned at each decision.

@@ -25,28 +25,22 @@ class LeafCells {
     find_leaves(belief.particles().front().state);
     List<List<double>> changes(leaves_.size());  // by the first leaf of the list
     std::vector<bool> has_changed(leaves_.size());
-    for (int walk = 0; walk < walks; ++walk) {
-      State state = belief.sample(random);
-      walk_.start();
-      for (int step = 0; step < longest && Model::ending(state) == Ending::running; ++step) {
-        const State before = state;
-        Model::step(state, walk_.next(state, random), random);
-        for (std::size_t i = 0; i < leaves_.size(); ++i) {
-          if (bits(leaves_[i], state) == bits(leaves_[i], before)) continue;
-          has_changed[leaves_[i].list] = true;
-          if (leaves_[i].is_real) changes[leaves_[i].list].push_back(std::abs(number(leaves_[i], state) - number(leaves_[i], before)));
-        }
+    RandomWalk<Model>{}.explore(belief, walks, longest, random, [&](const State& before, const State& after) {
+      for (const Place& leaf : leaves_) {
+        if (bits(leaf, after) == bits(leaf, before)) continue;
+        has_changed[leaf.list] = true;
+        if (leaf.is_real) changes[leaf.list].push_back(std::abs(number(leaf, after) - number(leaf, before)));
       }
-    }
+    });
     List<Place> moving;
     resting_.clear();
-    for (std::size_t i = 0; i < leaves_.size(); ++i) {
-      if (!has_changed[leaves_[i].list]) {
-        if (!leaves_[i].is_real) resting_.push_back(leaves_[i]);
+    for (Place& leaf : leaves_) {
+      if (!has_changed[leaf.list]) {
+        if (!leaf.is_real) resting_.push_back(leaf);
         continue;
       }
-      if (leaves_[i].is_real) leaves_[i].width = width_of(changes[leaves_[i].list]);
-      moving.push_back(leaves_[i]);
+      if (leaf.is_real) leaf.width = width_of(changes[leaf.list]);
+      moving.push_back(leaf);
     }
     leaves_ = std::move(moving);
   }
@@ -108,7 +102,6 @@ class LeafCells {
 
   List<Place> leaves_;
   List<Place> resting_;
-  RandomWalk<Model> walk_;
 };
 
 }

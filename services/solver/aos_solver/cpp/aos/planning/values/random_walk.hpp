@@ -34,6 +34,18 @@ class RandomWalk {
     for (; taken < steps && Model::ending(state) == Ending::running; ++taken) Model::step(state, next(state, random), random);
     return taken;
   }
+  // Walks from a belief so many times, and calls `see(before, after)` for each step.
+  void explore(const auto& belief, int walks, int longest, Sampler& random, auto&& see) {
+    for (int walk = 0; walk < walks; ++walk) {
+      State state = belief.sample(random);
+      start();
+      for (int step = 0; step < longest && Model::ending(state) == Ending::running; ++step) {
+        const State before = state;
+        Model::step(state, next(state, random), random);
+        see(before, state);
+      }
+    }
+  }
 
  private:
   void find_odds(const State& state, Sampler& random) {

@@ -24,19 +24,13 @@ class RunningDown {
     List<std::uint64_t> cells_before(cells_.size());
     cell_.resize(cells_.size());
     int taken = 0;
-    RandomWalk<Model> walk;
-    for (int i = 0; i < walks; ++i) {
-      State state = belief.sample(random);
-      walk.start();
-      for (int step = 0; step < longest && Model::ending(state) == Ending::running; ++step, ++taken) {
-        const State before = state;
-        cells_.write(before, cells_before.data());
-        Model::step(state, walk.next(state, random), random);
-        cells_.write(state, cell_.data());
-        for (std::size_t c = 0; c < cell_.size(); ++c) of_cells[c].note(static_cast<double>(static_cast<std::int64_t>(cell_[c] - cells_before[c])));
-        for (std::size_t n = 0; n < numbers.size(); ++n) of_numbers[n].note(numbers[n].of(Model::bytes_of(state)) - numbers[n].of(Model::bytes_of(before)));
-      }
-    }
+    RandomWalk<Model>{}.explore(belief, walks, longest, random, [&](const State& before, const State& after) {
+      ++taken;
+      cells_.write(before, cells_before.data());
+      cells_.write(after, cell_.data());
+      for (std::size_t c = 0; c < cell_.size(); ++c) of_cells[c].note(static_cast<double>(static_cast<std::int64_t>(cell_[c] - cells_before[c])));
+      for (std::size_t n = 0; n < numbers.size(); ++n) of_numbers[n].note(numbers[n].of(Model::bytes_of(after)) - numbers[n].of(Model::bytes_of(before)));
+    });
     runs_.clear();
     for (const Trend& trend : of_cells) runs_.push_back(trend.only_runs(taken));
     lasts_.assign(Model::state_bytes(), true);
