@@ -17,9 +17,7 @@
 #include "aos/belief/particle_filter.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
-#include "aos/model/step.hpp"
 #include "aos/text/json.hpp"
 
 namespace aos {

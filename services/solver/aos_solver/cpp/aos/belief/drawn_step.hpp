@@ -8,7 +8,6 @@
 #include "aos/belief/split_filter.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
 
 namespace aos {
 

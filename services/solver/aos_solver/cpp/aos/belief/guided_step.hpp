@@ -22,9 +22,7 @@
 #pragma once
 
 #include "aos/base/function_ref.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
-#include "aos/model/step.hpp"
 #include "aos/model/transition.hpp"
 #include "aos/text/text_order.hpp"
 

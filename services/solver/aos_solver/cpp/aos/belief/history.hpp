@@ -9,7 +9,6 @@
 #include "aos/base/add_up.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
 #include "aos/model/step.hpp"
 

@@ -12,12 +12,9 @@
 #include <set>
 
 #include "aos/base/mixed.hpp"
-#include "aos/belief/belief.hpp"
 #include "aos/belief/belief_digest.hpp"
 #include "aos/belief/posteriors.hpp"
 #include "aos/belief/saved_history.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/text/json.hpp"
 
 namespace aos {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "aos/draws/loop_heads.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
 
 namespace aos {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "aos/base/descriptor_file.hpp"
-#include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/hypotheses.hpp"
 #include "aos/belief/kept_traces.hpp"

@@ -17,7 +17,6 @@
 #include "aos/belief/guided_step.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/passage.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
 
 namespace aos {

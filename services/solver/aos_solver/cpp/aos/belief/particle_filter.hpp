@@ -12,9 +12,7 @@
 #include "aos/belief/guided_step.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/moves.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
-#include "aos/model/step.hpp"
 
 namespace aos {
 

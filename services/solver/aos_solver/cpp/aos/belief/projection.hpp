@@ -5,10 +5,8 @@
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/state_text.hpp"
-#include "aos/model/step.hpp"
 
 namespace aos {
 

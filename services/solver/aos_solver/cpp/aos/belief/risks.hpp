@@ -4,8 +4,6 @@
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/model/violations.hpp"
 
 namespace aos {

@@ -7,9 +7,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
-#include "aos/model/step.hpp"
 
 namespace aos {
 

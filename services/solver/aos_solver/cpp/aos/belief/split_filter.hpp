@@ -7,9 +7,7 @@
 #include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/draws/split_draws.hpp"
-#include "aos/model/step.hpp"
 
 namespace aos {
 

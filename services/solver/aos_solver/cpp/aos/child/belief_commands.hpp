@@ -2,7 +2,6 @@
 #pragma once
 
 #include "aos/base/fault.hpp"
-#include "aos/belief/belief.hpp"
 #include "aos/belief/effort.hpp"
 #include "aos/belief/hypotheses.hpp"
 #include "aos/belief/kept_beliefs.hpp"

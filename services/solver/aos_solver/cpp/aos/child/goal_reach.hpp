@@ -2,10 +2,8 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
-#include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/child/reachability.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/planning/values/random_walk.hpp"
 
 namespace aos {

@@ -1,7 +1,6 @@
 // A belief in which the probability of a variable's value is another one (Jeffrey's rule).
 #pragma once
 
-#include "aos/belief/belief.hpp"
 #include "aos/belief/saved_history.hpp"
 #include "aos/model/values.hpp"
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "aos/base/descriptor_file.hpp"
-#include "aos/belief/belief.hpp"
 #include "aos/child/left_out.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/text/json.hpp"

@@ -8,7 +8,6 @@
 #include "aos/child/listing.hpp"
 #include "aos/child/reachability.hpp"
 #include "aos/child/wording.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/idle_actions.hpp"

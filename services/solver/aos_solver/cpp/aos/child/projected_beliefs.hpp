@@ -1,11 +1,9 @@
 // The commands by which a belief goes over to an engine of other variables.
 #pragma once
 
-#include "aos/belief/belief.hpp"
 #include "aos/belief/projection.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/saved_beliefs.hpp"
-#include "aos/model/step.hpp"
 #include "aos/text/json.hpp"
 
 namespace aos {

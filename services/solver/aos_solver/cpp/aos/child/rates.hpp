@@ -3,9 +3,7 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
-#include "aos/belief/belief.hpp"
 #include "aos/child/command.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/endless_steps.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/listed/step_table.hpp"

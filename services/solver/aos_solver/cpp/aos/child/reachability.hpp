@@ -2,7 +2,6 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
-#include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/listed/state_space.hpp"
 

@@ -6,7 +6,6 @@
 #include "aos/base/reward_ledger.hpp"
 #include "aos/base/set_for_now.hpp"
 #include "aos/draws/enumerator.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/text/json.hpp"
 

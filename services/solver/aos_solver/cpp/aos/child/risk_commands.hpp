@@ -1,10 +1,8 @@
 // The command that asks an engine child about the mission's constraints.
 #pragma once
 
-#include "aos/belief/belief.hpp"
 #include "aos/belief/risks.hpp"
 #include "aos/child/command.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/text/json.hpp"
 
 namespace aos {

@@ -1,7 +1,6 @@
 // Beliefs as text, for an engine whose model has the same states. Its documents are the same, or changed ones.
 #pragma once
 
-#include "aos/belief/belief.hpp"
 #include "aos/belief/saved_history.hpp"
 #include "aos/model/state_text.hpp"
 #include "aos/text/base64.hpp"

@@ -1,16 +1,13 @@
 // The commands of a study: exact values and their terms at one supposed belief after the other.
 #pragma once
 
-#include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/reward_terms.hpp"
 #include "aos/child/wording.hpp"
 #include "aos/draws/enumerator.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/text/json.hpp"
 #include "numbers/exact.hpp"

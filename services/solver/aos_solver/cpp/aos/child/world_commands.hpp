@@ -6,9 +6,7 @@
 #include "aos/child/wording.hpp"
 #include "aos/child/worlds.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/draws/replay.hpp"
-#include "aos/model/step.hpp"
 #include "aos/text/base64.hpp"
 #include "aos/text/json.hpp"
 

@@ -4,8 +4,6 @@
 #pragma once
 
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/listed/observation_numbers.hpp"
 #include "aos/text/base64.hpp"
 #include "aos/text/json.hpp"

@@ -6,7 +6,6 @@
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/normal.hpp"
-#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -5,7 +5,6 @@
 #include "aos/draws/directed.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/loop_elimination.hpp"
-#include "aos/draws/random.hpp"
 
 namespace aos {
 

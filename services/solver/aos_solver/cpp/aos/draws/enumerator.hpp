@@ -8,7 +8,6 @@
 #include "aos/draws/loop_chain.hpp"
 #include "aos/draws/loop_heads.hpp"
 #include "aos/draws/number_strata.hpp"
-#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -4,7 +4,6 @@
 
 #include "aos/draws/directed.hpp"
 #include "aos/draws/loop_heads.hpp"
-#include "aos/draws/random.hpp"
 
 namespace aos {
 

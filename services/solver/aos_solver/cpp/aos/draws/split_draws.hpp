@@ -11,7 +11,6 @@
 
 #include "aos/draws/directed.hpp"
 #include "aos/draws/enumerator.hpp"
-#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -6,7 +6,6 @@
 #pragma once
 
 #include "aos/draws/loop_heads.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/endless_steps.hpp"
 #include "aos/model/reflection.hpp"

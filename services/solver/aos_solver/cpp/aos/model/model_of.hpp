@@ -9,7 +9,6 @@
 #include "aos/model/grounding.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/state_text.hpp"
-#include "aos/model/step.hpp"
 #include "aos/model/transition.hpp"
 #include "aos/model/violations.hpp"
 

@@ -12,7 +12,6 @@
 #include "aos/model/reporting.hpp"
 #include "aos/model/sorted.hpp"
 #include "aos/model/state_text.hpp"
-#include "aos/model/step.hpp"
 #include "aos/model/text.hpp"
 #include "aos/model/trace.hpp"
 #include "aos/model/transition.hpp"

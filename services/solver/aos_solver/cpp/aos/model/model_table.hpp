@@ -3,14 +3,12 @@
 #pragma once
 
 #include "aos/draws/directed.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/build_kind.hpp"
 #include "aos/model/grounding.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/rollout.hpp"
 #include "aos/model/state_text.hpp"
-#include "aos/model/step.hpp"
 #include "aos/model/violations.hpp"
 
 namespace aos {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "aos/base/switches.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/build_kind.hpp"
 #include "aos/model/step.hpp"
 

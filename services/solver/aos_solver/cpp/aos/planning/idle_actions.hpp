@@ -3,7 +3,6 @@
 
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/listed/state_numbers.hpp"
 

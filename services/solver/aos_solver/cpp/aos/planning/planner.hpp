@@ -5,9 +5,6 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/function_ref.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/listed/state_space.hpp"
 

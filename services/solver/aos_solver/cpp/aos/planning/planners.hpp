@@ -2,9 +2,6 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/belief_tree/belief_tree.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/despot/despot.hpp"

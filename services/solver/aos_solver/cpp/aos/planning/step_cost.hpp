@@ -5,7 +5,6 @@
 
 #include "aos/draws/directed.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"

@@ -1,8 +1,6 @@
 // What planners have in common that search a tree: what they tell of it, and missions that show what it promises too much.
 #pragma once
 
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/planning/action_values.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/planning/values/group_missions.hpp"

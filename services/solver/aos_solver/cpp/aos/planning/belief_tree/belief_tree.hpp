@@ -10,8 +10,6 @@
 #include "aos/base/clock.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/switches.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 #include "aos/planning/belief_tree/sensed_belief.hpp"
 #include "aos/planning/belief_tree/sensing_tables.hpp"

@@ -10,7 +10,6 @@
 
 #include "aos/base/mixed.hpp"
 #include "aos/draws/described_distribution.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 
 namespace aos {

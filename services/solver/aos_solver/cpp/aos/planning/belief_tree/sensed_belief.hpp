@@ -1,7 +1,6 @@
 // A small belief of listed states, and what it becomes after an action and an observation that is drawn.
 #pragma once
 
-#include "aos/draws/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 #include "aos/planning/belief_tree/sensing_tables.hpp"
 #include "aos/planning/listed/state_space.hpp"

@@ -7,8 +7,6 @@
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/model/transition.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 

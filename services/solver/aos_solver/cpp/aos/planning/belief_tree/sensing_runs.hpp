@@ -4,7 +4,6 @@
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/model/blame.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 #include "aos/planning/belief_tree/sensed_path.hpp"
 #include "aos/planning/listed/state_space.hpp"

@@ -8,7 +8,6 @@
 #pragma once
 
 #include "aos/base/mixed.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 #include "aos/planning/belief_tree/observation_tables.hpp"
 #include "aos/planning/belief_tree/sensed_path.hpp"

@@ -13,9 +13,6 @@
 #pragma once
 
 #include "aos/base/clock.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/action_values.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/despot/despot_constants.hpp"

@@ -4,9 +4,6 @@
 #pragma once
 
 #include "aos/base/statistics.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/despot/despot_constants.hpp"
 #include "aos/planning/same_observation.hpp"

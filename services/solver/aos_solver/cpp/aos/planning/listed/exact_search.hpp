@@ -3,8 +3,6 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/switches.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/planning/action_values.hpp"
 #include "aos/planning/backoff.hpp"
 #include "aos/planning/budget.hpp"

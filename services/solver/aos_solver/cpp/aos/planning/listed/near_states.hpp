@@ -2,7 +2,6 @@
 // count of steps. A search with a horizon needs no others.
 #pragma once
 
-#include "aos/belief/belief.hpp"
 #include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "point_based/flat_model.hpp"

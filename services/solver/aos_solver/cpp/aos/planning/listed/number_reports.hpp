@@ -9,7 +9,6 @@
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -6,8 +6,6 @@
 #include "aos/base/clock.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/action_values.hpp"
 #include "aos/planning/backoff.hpp"
 #include "aos/planning/budget.hpp"

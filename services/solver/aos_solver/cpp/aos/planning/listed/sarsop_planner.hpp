@@ -3,8 +3,6 @@
 
 #include "aos/base/switches.hpp"
 #include "aos/base/function_ref.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/planning/listed/near_states.hpp"
 #include "aos/planning/listed/point_based.hpp"
 #include "aos/planning/listed/state_space.hpp"

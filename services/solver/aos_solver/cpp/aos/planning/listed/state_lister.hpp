@@ -6,7 +6,6 @@
 
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/listed/state_numbers.hpp"
 
 namespace aos {

@@ -4,9 +4,7 @@
 // as it is and makes their spread smaller.
 #pragma once
 
-#include "aos/belief/belief.hpp"
 #include "aos/draws/alias.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/listed/state_space.hpp"
 
 namespace aos {

@@ -5,8 +5,6 @@
 #pragma once
 
 #include "aos/base/stable_order.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_search.hpp"
 

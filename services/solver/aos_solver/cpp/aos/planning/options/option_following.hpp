@@ -2,8 +2,6 @@
 // them earns anything, a search looks for another one.
 #pragma once
 
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/options/option_library.hpp"
 #include "aos/planning/options/option_search.hpp"
 

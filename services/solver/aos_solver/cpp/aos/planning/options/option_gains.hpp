@@ -7,8 +7,6 @@
 #pragma once
 
 #include "aos/base/stable_order.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/option_sequels.hpp"
 #include "aos/planning/options/own_changes.hpp"

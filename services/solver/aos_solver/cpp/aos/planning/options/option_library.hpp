@@ -2,9 +2,6 @@
 #pragma once
 
 #include "aos/base/switches.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/backoff.hpp"
 #include "aos/planning/options/best_end.hpp"
 #include "aos/planning/options/decision_clock.hpp"

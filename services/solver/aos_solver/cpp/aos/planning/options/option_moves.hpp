@@ -1,8 +1,6 @@
 // What can be observed elsewhere: moves, with what is observed on the way or where they lead.
 #pragma once
 
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/option_regret.hpp"
 #include "aos/planning/options/option_search.hpp"

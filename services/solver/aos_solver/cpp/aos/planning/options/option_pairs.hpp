@@ -6,7 +6,6 @@
 #pragma once
 
 #include "aos/base/stable_order.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_regret.hpp"
 #include "aos/planning/options/option_search.hpp"

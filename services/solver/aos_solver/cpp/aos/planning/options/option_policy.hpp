@@ -13,9 +13,6 @@
 
 #include "aos/base/stable_order.hpp"
 #include "aos/base/switches.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/option_detours.hpp"
 #include "aos/planning/options/option_gains.hpp"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "aos/base/statistics.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/repeated_observation.hpp"
 #include "aos/planning/options/sampled_belief.hpp"

@@ -11,8 +11,6 @@
 
 #include "aos/base/stable_order.hpp"
 #include "aos/base/switches.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
 #include "aos/planning/values/running_down.hpp"

@@ -3,8 +3,6 @@
 #pragma once
 
 #include "aos/base/switches.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_search.hpp"
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include "aos/base/stable_order.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/earned.hpp"
 #include "aos/planning/options/decision_clock.hpp"

@@ -3,9 +3,6 @@
 // same option is best. A test that tells of options only reports the same from both.
 #pragma once
 
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/option_library.hpp"
 #include "aos/planning/options/option_regret.hpp"

@@ -2,8 +2,6 @@
 // options of a belief count once each; here the same may be earned again and again.
 #pragma once
 
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_following.hpp"
 #include "aos/planning/options/option_library.hpp"

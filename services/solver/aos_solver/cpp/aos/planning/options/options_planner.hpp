@@ -3,8 +3,6 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/switches.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/planning/backoff.hpp"
 #include "aos/planning/options/option_policy.hpp"
 #include "aos/planning/options/plain_plans.hpp"

@@ -4,8 +4,6 @@
 // need not say what changes by itself. An action changes a variable where its result is another one.
 #pragma once
 
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
 
 namespace aos {

@@ -3,8 +3,6 @@
 
 #include "aos/base/stable_order.hpp"
 #include "aos/base/statistics.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/earned.hpp"
 #include "aos/planning/options/sampled_belief.hpp"

@@ -4,8 +4,6 @@
 #include "aos/base/function_ref.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/options/step_reports.hpp"
 
 namespace aos {

@@ -7,7 +7,6 @@
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/coming_to_an_end.hpp"
 

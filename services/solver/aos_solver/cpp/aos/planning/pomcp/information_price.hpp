@@ -11,8 +11,6 @@
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/enumerator.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/earned.hpp"
 #include "aos/planning/pomcp/observation_doubts.hpp"

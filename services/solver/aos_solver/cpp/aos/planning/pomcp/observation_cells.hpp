@@ -7,7 +7,6 @@
 #include <unordered_map>
 
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "aos/base/statistics.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
 #include "aos/planning/values/few_outcomes.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/function_ref.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"

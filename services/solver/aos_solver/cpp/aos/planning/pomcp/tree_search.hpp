@@ -7,8 +7,6 @@
 
 #include "aos/base/switches.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/pomcp/best_action.hpp"
 #include "aos/planning/pomcp/exploration.hpp"

@@ -4,8 +4,6 @@
 // way, and the others tell what it saves, and the other way round: the best way for a few drawn states is too good for these.
 #pragma once
 
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
 #include "aos/planning/same_observation.hpp"

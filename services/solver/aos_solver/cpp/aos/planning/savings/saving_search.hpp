@@ -6,8 +6,6 @@
 #pragma once
 
 #include "aos/base/stable_order.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/earned.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/own_changes.hpp"

@@ -1,9 +1,6 @@
 // The places that moves lead to which tell nothing, the tests that can be made there, the ends, and the ways between.
 #pragma once
 
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
 #include "aos/planning/options/step_reports.hpp"

@@ -4,8 +4,6 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/switches.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/planning/backoff.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/planning/pomcp/pomcp.hpp"

@@ -3,7 +3,6 @@
 // what is left to chance is the next state (a Rao-Blackwell estimate). The second step does, too: the search keeps what is below.
 #pragma once
 
-#include "aos/model/step.hpp"
 #include "aos/planning/values/few_outcomes.hpp"
 
 namespace aos {

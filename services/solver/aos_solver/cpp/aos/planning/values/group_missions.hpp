@@ -6,10 +6,7 @@
 // can be expected to return as much, or more.
 #pragma once
 
-#include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/same_observation.hpp"

@@ -6,9 +6,7 @@
 
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
 #include "aos/model/reflection.hpp"
-#include "aos/model/step.hpp"
 #include "aos/model/values.hpp"
 #include "aos/planning/values/random_walk.hpp"
 

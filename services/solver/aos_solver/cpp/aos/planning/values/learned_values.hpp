@@ -12,8 +12,6 @@
 #include "aos/base/progress.hpp"
 #include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/earned.hpp"
 #include "aos/planning/values/cell_tables.hpp"
 #include "aos/planning/values/random_walk.hpp"

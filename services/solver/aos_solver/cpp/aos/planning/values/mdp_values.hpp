@@ -7,7 +7,6 @@
 
 #include "aos/base/progress.hpp"
 #include "aos/base/statistics.hpp"
-#include "aos/belief/belief.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/values/state_values.hpp"
 #include "aos/planning/values/value_constants.hpp"

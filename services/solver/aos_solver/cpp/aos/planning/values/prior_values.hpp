@@ -3,9 +3,6 @@
 // values and prior, beyond what the values' standard errors explain. The larger this error is, the more the values count.
 #pragma once
 
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"

@@ -1,9 +1,7 @@
 // Actions as a rollout takes them (rollout.hpp), one by one: those of a random walk repeat, as those of some rollouts do.
 #pragma once
 
-#include "aos/draws/random.hpp"
 #include "aos/model/rollout.hpp"
-#include "aos/model/step.hpp"
 
 namespace aos {
 

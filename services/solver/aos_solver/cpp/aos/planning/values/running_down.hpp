@@ -2,9 +2,6 @@
 #pragma once
 
 #include "aos/base/mixed.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/model/values.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
 #include "aos/planning/values/random_walk.hpp"

@@ -2,8 +2,6 @@
 // In a model with few states, a ListedState is the number of a state in a table.
 #pragma once
 
-#include "aos/draws/random.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/listed/step_table.hpp"
 #include "aos/planning/pomcp/observation_doubts.hpp"
 #include "aos/planning/values/expected_rewards.hpp"

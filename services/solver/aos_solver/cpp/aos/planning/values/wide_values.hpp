@@ -6,10 +6,8 @@
 #include <bitset>
 
 #include "aos/base/progress.hpp"
-#include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/model/step.hpp"
 #include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/listed/state_lister.hpp"
 #include "aos/planning/listed/state_numbers.hpp"
