@@ -15,7 +15,8 @@ _TABLES = Path(__file__).parent / "exam" / "cpp"
 
 def engine_checks(cache_dir: Path) -> Path:
     """The program, from the cache or compiled now. The command of the exam has one that is optimised more."""
-    return asyncio.run(built_program(cache_dir, UNITS / "checks.cpp", "-O1", "-DAOS_CHECKED", includes=[_TABLES]))
+    checked = ("-O1", "-DAOS_CHECKED")
+    return asyncio.run(built_program(cache_dir, UNITS / "checks.cpp", *checked, includes=[_TABLES]))
 
 
 if __name__ == "__main__":
