@@ -76,19 +76,10 @@ def _token() -> str:
 def _started(runs: Path) -> GatewayNote:
     gateway_folder().mkdir(parents=True, exist_ok=True)
     log = gateway_folder() / "gateway.log"
+    command = [sys.executable, *f"-m aos_gateway --port 0 --unused {_UNUSED_S}".split()]
     with log.open("ab") as said:
         process = subprocess.Popen(
-            [
-                sys.executable,
-                "-m",
-                "aos_gateway",
-                "--port",
-                "0",
-                "--unused",
-                str(_UNUSED_S),
-                "--runs",
-                str(runs),
-            ],
+            [*command, "--runs", str(runs)],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=said,

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.living import RUNS, chosen_run, living_runs, noted, runs_here
+from aos_deploy.runs.living import RUNS, chosen_run, living_run, living_runs, noted, runs_here
 from aos_deploy.runs.record import RunRecord
 from aos_protocol.errors import BusError
 
@@ -27,6 +27,18 @@ def test_the_runs_of_a_deploy_file_in_a_folder_are_found_from_above(tmp_path, mo
     assert runs_here() == RUNS
     here = run_in(tmp_path / "runs")
     assert chosen_run(None, None).path == here
+
+
+def test_a_command_says_which_run_of_another_folder_it_is_for(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("AOS_RUNNING_DIR", str(tmp_path / "running"))
+    run = RunDirectory.create(tmp_path / "here" / "runs", "r", 0)
+    run.write_record(RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=os.getpid()))
+    with noted(run):
+        for folder in (tmp_path / "here", tmp_path, tmp_path / "running"):
+            monkeypatch.chdir(folder)
+            assert chosen_run(None, None).path == living_run(None, None).path
+    run.close()
+    assert capsys.readouterr().err == f"aos: the run is {run.path}\n" * 2
 
 
 def test_a_run_that_was_killed_and_taken_up_is_one(tmp_path, monkeypatch):

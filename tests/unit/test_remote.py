@@ -5,8 +5,10 @@ import pytest
 
 from aos_deploy.deployment.hosts import HOST
 from aos_deploy.processes import ssh_connection
+from aos_deploy.processes.end import told_end
 from aos_deploy.processes.program import Program
 from aos_deploy.processes.remote import dialled, is_lost, remote_command, why_it_failed
+from aos_deploy.runs.directory import RunDirectory
 
 
 @pytest.mark.parametrize(
@@ -91,6 +93,15 @@ def test_a_connection_that_is_lost_is_told_from_a_program_that_ends():
     assert is_lost(far, 255)
     assert not is_lost(far, 1)
     assert not is_lost(here, 255)
+
+
+def test_the_end_of_a_connection_is_told_with_what_ssh_said(tmp_path):
+    run = RunDirectory.create(tmp_path, "r", 0)
+    run.log("arm").write_text("ready\nTimeout, server arm not responding.\n")
+    far = Program(name="arm", command=("./arm",), host="arm")
+    assert told_end(far, run, 255).startswith("exit status 255, arm: arm cannot be reached by ssh: Timeout")
+    assert told_end(far, run, 1) == "exit status 1"
+    run.close()
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 import math
 
+import msgspec
 import pytest
 
 from aos_deploy.views.tables import print_runs, print_values
@@ -75,9 +76,12 @@ def test_the_summary_of_missions_says_how_the_others_ended(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
     endings = [Ending.GOAL, Ending.OVER, Ending.STEP_LIMIT, Ending.STEP_LIMIT]
     runs = [SimulatedRun(seed, 1.0, 1.0, ending, 1, (), ()) for seed, ending in enumerate(endings)]
+    runs[1] = msgspec.structs.replace(runs[1], world_ending=Ending.OVER)
     rates = dict.fromkeys(("goal_rate", "believed_goal_rate", "failure_rate"), 0.25)
     print_runs(runs, {"runs": 4, "mean_discounted_return": 1, "mean_steps": 1} | rates)
-    assert "failure in 25%, step_limit in 50%, over in 25%, discounted" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "failure in 25%, step_limit in 50%, over in 25%, discounted" in told
+    assert "believed in 25% (25% ended with the world, unnoticed), " in told
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from aos_deploy.bundles.files import BundledFiles, files_of_bundles, project_of
 from aos_deploy.deployment.reading import Deployment, with_whole_paths
 from aos_deploy.events import Event, Report, ServiceChanged, Told
 from aos_deploy.missions.readiness import tell_lost_skills, unbound_adapters, until_skills_can_run
+from aos_deploy.missions.run_of_processes import RunOfProcesses
 from aos_deploy.missions.taking_up import TakenUp, worlds_text
 from aos_deploy.page_address import page_texts
 from aos_deploy.printing import count, from_here, time_text
@@ -34,7 +35,6 @@ from aos_runtime.parties.asking import ask_until_answered
 from aos_runtime.parties.steering import start_mission
 from aos_runtime.processes.lifecycle import root_cause
 from aos_runtime.processes.settings import ServiceSettings
-from aos_runtime.sandbox.support import sandbox_support, sandbox_text
 
 _END_NOTICE_S = 5.0
 CAUSE_NOTICE_S = 0.5
@@ -42,7 +42,7 @@ _BUILD_TIMEOUT_S = 600.0
 """The first build with a compiler that has to build its own library takes a minute on a quick machine."""
 
 
-class MissionRun:
+class MissionRun(RunOfProcesses):
     """Runs a deployment once, or goes on with a run that is `taken_up`. `report` is told what happens.
 
     Where it `shows_page`, also the address of the run's page, once the run can be found.
@@ -63,16 +63,11 @@ class MissionRun:
         shows_page: bool = False,
     ) -> None:
         file = msgspec.structs.replace(deployment.file, stay=self.stays)
-        self._deployment = msgspec.structs.replace(deployment, file=file)
-        self._report = report
-        self._clock = clock
+        super().__init__(msgspec.structs.replace(deployment, file=file), report, clock)
         self._taken_up = taken_up
         self._shows_page = shows_page
         self._is_played = is_played or (taken_up is not None and taken_up.record.is_played)
-        self._begun_s = clock.monotonic_s()
-        self.error: AosError | None = None
         self._started = time_text(clock.now_ns()) if taken_up is None else taken_up.record.started
-        self._supervisor: Supervisor | None = None
         self._heard = Account()
         self._own_pushes: set[str] = set()
         self._write_again: Callable[[], None] = _nothing
@@ -92,9 +87,7 @@ class MissionRun:
     async def _run_at(self, endpoint: str) -> Summary:
         run = self._run = self._run_directory()
         endpoint = endpoint or run.make_endpoint()
-        self._report(Told(f"run directory {from_here(run.path)}"))
-        if not sandbox_support().is_whole:
-            self._report(Told(sandbox_text()))
+        self._tell_opened(run)
         if self._taken_up is not None and (lost := worlds_text(self._deployment)):
             self._report(Told(lost))
         for remark in unbound_adapters(self._deployment):
@@ -110,10 +103,7 @@ class MissionRun:
         except AosError as error:
             self.error = error
         summary = self._settled(run, was_interrupted=was_interrupted)
-        try:
-            run.write_summary(summary)
-        except StorageError as error:
-            self.error = self.error or error
+        self._write_summary(run, summary)
         await send_rest(run, is_wanted=bool(self._deployment.file.spans.otlp))
         run.close()
         took = f"{count(summary.steps, 'step')} in {summary.duration_s:.1f} s"
@@ -133,12 +123,7 @@ class MissionRun:
     def _run_directory(self) -> RunDirectory:
         if self._taken_up is not None:
             return self._taken_up.run
-        return RunDirectory.create(self._deployment.runs, self._deployment.file.robot, self._clock.now_ns())
-
-    def kill(self) -> None:
-        """Ends every process without waiting for it."""
-        if self._supervisor is not None:
-            self._supervisor.kill()
+        return super()._run_directory()
 
     async def _run_in(self, run: RunDirectory, endpoint: str) -> None:
         deployment = self._deployment
@@ -283,22 +268,14 @@ class MissionRun:
 
     def _summary(self, verdict: Verdict, folder: Path) -> Summary:
         begun = beginning_of(folder)
-        return Summary(
-            robot=self._deployment.file.robot,
-            deploy_file=str(self._deployment.path),
-            seed=self._deployment.file.solver.seed,
+        return self._summary_of(
             started=self._started,
             **msgspec.structs.asdict(verdict),
             steps=verdict.steps,
             services_ready_s=self._services_ready_s,
             first_decision_s=self._first_decision_s,
-            duration_s=self._elapsed_s(),
-            process_ends=tuple(self._supervisor.ends) if self._supervisor is not None else (),
             mission_parameters=begun.mission_parameters if begun is not None else {},
         )
-
-    def _elapsed_s(self) -> float:
-        return round(self._clock.monotonic_s() - self._begun_s, 3)
 
 
 def _nothing() -> None:

@@ -7,6 +7,7 @@ from aos_deploy.processes.program import Program
 from aos_deploy.processes.remote import why_it_failed
 from aos_deploy.runs.directory import RunDirectory
 from aos_protocol.errors import AosError, DeployError, StorageError, error_from_code
+from aos_protocol.messages import Fault
 from aos_runtime.processes.lifecycle import STORAGE_STATUS
 
 
@@ -31,6 +32,15 @@ def end_of(program: Program, run: RunDirectory, status: int, *, was_ready: bool)
     elif program.is_own and status == 0:
         hint = f"What goes into the background has ended: keep it in the foreground. {hint}"
     return DeployError(text, code=code, hint=hint)
+
+
+def told_end(program: Program, run: RunDirectory, status: int) -> str:
+    """The status of a process that ended by itself, with the fault it left or what ssh says."""
+    name = program.name
+    said: Fault | AosError | None = run.fault(name)
+    if said is None and program.host:
+        said = why_it_failed(name, program.host, status, run.last_log_lines(name))
+    return status_text(status) if said is None else f"{status_text(status)}, {said.message}"
 
 
 def look_at_log(run: RunDirectory, name: str) -> str:

@@ -29,7 +29,7 @@ from aos_deploy.processes.consequence import (
     consequence,
     fatal_end,
 )
-from aos_deploy.processes.end import look_at_log, status_text
+from aos_deploy.processes.end import look_at_log, status_text, told_end
 from aos_deploy.processes.log_sizes import keep_logs_short, shorten_all
 from aos_deploy.processes.passes import Outsider, Passes
 from aos_deploy.processes.program import Program
@@ -353,8 +353,8 @@ class Supervisor:
             running.is_ready = False
             others = [other for other in self._running.values() if other is not running]
             then = consequence(running, status, others, self._run, self._clock.monotonic_s())
-            fault = self._run.fault(program.name) if then != THE_RUN_ENDS else None  # It is told then.
-            how = f"{status_text(status)}, {fault.message}" if fault is not None else status_text(status)
+            is_told = then == THE_RUN_ENDS
+            how = status_text(status) if is_told else told_end(program, self._run, status)
             self._changed(program.name, "ended", f"{how}; {then}")
             after_s = round(self._clock.monotonic_s() - self._started_s, 3)
             self.ends.append(ProcessEnd(program.name, after_s, status_text(status), then))

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
+from aos_runtime.disk.folder_lock import locked_folder
+
 SOCKET = "bus"
 """The name of the socket in the run directory."""
 
@@ -93,16 +95,11 @@ def _locked(folder: Path, *, waits: bool = False) -> int | None:
 
     Whoever looks whether a folder was left holds it for a second at most, and can be waited for.
     """
+    kind = fcntl.LOCK_EX | (0 if waits else fcntl.LOCK_NB)
     try:
-        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
+        return locked_folder(folder, kind, opened=os.O_NOFOLLOW)
     except OSError:
         return None
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if waits else fcntl.LOCK_NB))
-    except OSError:
-        os.close(descriptor)
-        return None
-    return descriptor
 
 
 def _is_listened_at(path: Path) -> bool:

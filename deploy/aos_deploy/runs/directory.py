@@ -35,6 +35,7 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
 from aos_protocol.spelling import did_you_mean_path
+from aos_runtime.disk.folder_lock import locked_folder
 from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 from aos_runtime.failpoints import reach
 from aos_runtime.processes.settings import fault_path
@@ -70,7 +71,7 @@ class RunDirectory:
             for folder in ("settings", "credentials", "logs", "faults"):
                 (path / folder).mkdir(mode=0o700)
             created = cls(path)
-            created._lock = _locked(path, fcntl.LOCK_EX)
+            created._lock = locked_folder(path, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             message = f"no run directory can be made in {runs}: {error.strerror}"
             raise DeployError(message, code="AOS805", hint="Name another folder with --runs") from error
@@ -79,7 +80,7 @@ class RunDirectory:
     def hold(self) -> bool:
         """Takes the lock until `close`; False while somebody else has it, since the run goes on."""
         try:
-            self._lock = _locked(self.path, fcntl.LOCK_EX)
+            self._lock = locked_folder(self.path, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             return False
         return True
@@ -234,7 +235,7 @@ class RunDirectory:
     def is_held(self) -> bool:
         """True while a process uses the directory: also of a run that begins, and cannot be found yet."""
         try:
-            os.close(_locked(self.path, fcntl.LOCK_SH))
+            os.close(locked_folder(self.path, fcntl.LOCK_SH | fcntl.LOCK_NB))
         except OSError:
             return True
         return False
@@ -272,17 +273,6 @@ def _kept(path: Path) -> Iterator[None]:
     except OSError as error:
         hint = "Make space there, or name another folder with --runs"
         raise StorageError(f"{path} cannot be written: {error.strerror}", hint=hint) from error
-
-
-def _locked(path: Path, kind: int) -> int:
-    """A lock on a directory, which goes with the process; OSError if another excludes it."""
-    handle = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
-    try:
-        fcntl.flock(handle, kind | fcntl.LOCK_NB)
-    except OSError:
-        os.close(handle)
-        raise
-    return handle
 
 
 def _made(runs: Path, name: str) -> Path:

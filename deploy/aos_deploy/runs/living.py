@@ -9,6 +9,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+import typer
+
 from aos_deploy.export.run_bundle import opened_bundle
 from aos_deploy.places import running_folder
 from aos_deploy.printing import from_here
@@ -63,7 +65,8 @@ def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
     """The run that a command means: the one named, else the one that goes on, else the last one.
 
     What is named may also be a file of runs, as `aos export --format bundle` writes one, with one run.
-    `runs` is the folder to look in; without one `runs` here comes first, then whatever goes on anywhere.
+    `runs` is the folder to look in; without one `runs` here comes first, then whatever goes on anywhere,
+    which is told.
     DeployError AOS801 if that is not one alone or the one named is none, BusError AOS605 if there is none.
     """
     if run is not None:
@@ -75,7 +78,11 @@ def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
     has_last = (runs or RUNS).joinpath(LATEST).exists()
     if len(candidates) > 1 and (here or not has_last):
         raise _several(candidates)
-    return candidates[0] if len(candidates) == 1 else RunDirectory.latest(runs or runs_here())
+    if len(candidates) != 1:
+        return RunDirectory.latest(runs or runs_here())
+    if elsewhere == candidates and elsewhere[0].path.parent != runs_here().resolve():
+        typer.echo(f"aos: the run is {elsewhere[0].path}", err=True)
+    return candidates[0]
 
 
 def chosen_runs(named: Iterable[Path] | None, runs: Path | None) -> list[Path]:
@@ -154,4 +161,4 @@ def _living(runs: Path | None) -> tuple[list[RunDirectory], list[RunDirectory]]:
 
 def _several(runs: list[RunDirectory]) -> DeployError:
     names = ", ".join(str(run.path) for run in runs)
-    return DeployError(f"{len(runs)} missions run: {names}", hint="Name one with --run")
+    return DeployError(f"{len(runs)} systems run: {names}", hint="Name one with --run")

@@ -118,13 +118,19 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float], *, has_g
     missions = count(len(runs), "mission")
     endings = (
         f"goal in {summary['goal_rate']:.0%} of {missions}, "
-        f"believed in {summary['believed_goal_rate']:.0%}, "
+        f"believed in {summary['believed_goal_rate']:.0%}{_unnoticed(runs)}, "
         f"failure in {summary['failure_rate']:.0%}{_other_endings(runs)}"
         if has_goals
         else missions
     )
     returned = f"discounted return {digits.signed(mean)}{error}"
     out.print(f"{endings}, {returned}, {summary['mean_steps']:.1f} steps")
+
+
+def _unnoticed(runs: Collection[SimulatedRun]) -> str:
+    """` (100% ended with the world, unnoticed)`: there a robot, which believes in no end, would go on."""
+    number = sum(run.ending is run.world_ending and run.believed_ending is None for run in runs)
+    return f" ({number / len(runs):.0%} ended with the world, unnoticed)" if number else ""
 
 
 def _other_endings(runs: Collection[SimulatedRun]) -> str:

@@ -52,7 +52,7 @@ class ServeOptions(NamedTuple):
     ] = False
     unused: Annotated[
         float | None,
-        seconds("--unused", least=0, help="End when no mission runs, and none looked for so many seconds"),
+        seconds("--unused", least=0, help="End after so many seconds without a mission or a look"),
     ] = None
 
 

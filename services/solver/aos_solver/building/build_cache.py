@@ -18,6 +18,7 @@ from collections.abc import Awaitable, Callable, Iterable
 from pathlib import Path
 
 from aos_protocol.errors import StorageError
+from aos_runtime.disk.folder_lock import locked_folder
 from aos_solver.building.build_lock import build_lock, locked
 
 _BUILDING = ".building"
@@ -136,17 +137,13 @@ class BuildCache:
                 excess_bytes -= size_bytes
 
 
-def _opened(folder: Path) -> int:
-    return os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
-
-
 def _held(folder: Path) -> int | None:
     """An open file that holds a folder's lock beside others; None where it is not there, or being removed.
 
     OSError where it cannot be opened.
     """
     try:
-        handle = _opened(folder)
+        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     except (FileNotFoundError, NotADirectoryError):
         return None
     try:
@@ -158,11 +155,10 @@ def _held(folder: Path) -> int | None:
 def _remove(folder: Path) -> bool:
     """Removes a folder that nobody holds; returns whether it has gone."""
     try:
-        handle = _opened(folder)
+        handle = locked_folder(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
         return False
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         if folder.suffix != _BUILDING:
             # It goes at once, as it came.
             folder = folder.rename(f"{folder}.{os.getpid()}.{time.monotonic_ns()}{_BUILDING}")
