@@ -14,6 +14,7 @@ from exam.families import FAMILIES, NEEDLES
 from exam.generation import named_problem, problems
 from exam.intervals import Intervals
 from exam.jobs import job
+from exam.offline import false_bounds
 from exam.problem import RUNNING, Problem
 from exam.summary import MEAN_TARGET, WORST_TARGET, Bounds, Regrets
 from exam.told import Told, Values
@@ -42,6 +43,15 @@ def test_the_truth_is_what_all_histories_add_up_to(name, truth: Driver):
     ):
         assert lower == pytest.approx(value, abs=1e-7)
         assert upper == pytest.approx(value, abs=1e-7)
+
+
+@pytest.mark.parametrize("name", ["dense/3", "machine/0", "endings/5", "hallway/3"])
+async def test_problem_files_are_solved_with_bounds_that_hold(name, executable: Path, cache_dir: Path):
+    without_end = Driver(executable, "values", {"decisions": 0, "truth": 1}, COMMAND_S)
+    try:
+        assert not await false_bounds(named_problem(name, 200), without_end, cache_dir, cpu_s=0.3)
+    finally:
+        without_end.close()
 
 
 def test_no_claim_about_random_models_is_false(executable: Path):

@@ -124,6 +124,7 @@ def test_a_discount_of_one_is_refused_before_states_are_listed_and_anything_is_p
         refused = aos("solve", *arguments, "--discount", "1")
         assert isinstance(refused.exception, PlanningError)
         assert (refused.exception.code, refused.stdout) == ("AOS320", "")
+        assert "--discount 0.99" in str(refused.exception)
 
 
 def test_a_deploy_file_names_a_policy(tmp_path):

@@ -82,34 +82,7 @@ def test_an_original_bundle_loads_with_these_warnings(corpus: Path, name):
     assert findings(loaded) == WARNINGS[name]
 
 
-def test_a_misspelt_key_is_named_with_the_right_one(corpus: Path):
-    (warning,) = [d for d in load_bundle(corpus / "sampling-rate").diagnostics if d.code == "AOS102"]
-    assert '"IteratePrevStateVars"' in warning.message
-    assert warning.hint == "Did you mean `IteratePreviousStateVars`?"
-
-
 def test_the_last_dynamic_model_of_a_file_counts(corpus: Path):
     project = load_bundle(corpus / "sarsop-simple").project
     (block,) = project.skill("inc_half").model.dynamic_model
     assert "bool b = AOS.Bernoulli(0.2);" in block.code.code
-
-
-def test_a_text_response_that_stands_alone_is_read(corpus: Path):
-    for name, skill in (("tic-tac-toe-sdl", "detect"), ("tic-tac-toe-json", "detect_board_state")):
-        project = load_bundle(corpus / name).project
-        assert project.skill(skill).mapping.response_variable == "obsr"
-
-
-def test_two_environments_are_an_error_at_the_second(corpus: Path):
-    loaded = load_bundle(corpus / "bad" / "turtlebot-duplicate")
-    errors = [diagnostic for diagnostic in loaded.diagnostics if diagnostic.is_error]
-    assert loaded.project is None
-    assert [f"{error.span} {error.code}" for error in errors] == [
-        "turtleBotVisitLocations.environment.json:4:18 AOS111"
-    ]
-
-
-def test_results_of_runs_are_told_from_documents(corpus: Path):
-    loaded = load_bundle(corpus / "bad" / "not-documents")
-    assert findings(loaded) == ["run1_outcomes.json:1:1 AOS107", "run2_outcomes.json:1:1 AOS107"]
-    assert loaded.project is None
