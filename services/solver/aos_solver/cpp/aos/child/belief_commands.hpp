@@ -99,24 +99,9 @@ class BeliefCommands {
     update_effort = {};
     const int action = action_of<Model>(command);
     const Observation observation = observation_of<Model>(action, command.text("response"));
-    const ObservedNumbers numbers = numbers_from(command.text("numbers"));
-    const auto locals = command.optional_text("locals");
     Fault uncorrected;  // without a code where nothing went wrong
-    const auto by = [&](const Belief<Model>& belief, auto&& sink) {
-      return locals ? corrected_posterior(belief, action, observation, sink, *locals, uncorrected)
-                    : belief.posterior(action, observation, sink, random_);
-    };
-    auto found = believed_.posteriors([&](const Belief<Model>& belief) { return by(belief, WeighedNumbers{numbers}); });
     bool has_other_numbers = false;
-    if (found.are_empty() && Model::number_count(Model::skill_of(action)) > 0) {
-      has_other_numbers = believed_.posteriors([&](const Belief<Model>& belief) {
-        WeighedNumbers reported{numbers, /*by_value=*/false};
-        return belief.posterior(action, observation, reported, random_);
-      }).are_empty();
-      if (has_other_numbers) {
-        found = believed_.posteriors([&](const Belief<Model>& belief) { return by(belief, ignored_numbers); });
-      }
-    }
+    auto found = posteriors_of(command, action, observation, has_other_numbers, uncorrected);
     const bool is_impossible = found.are_empty();
     if (!is_monitor(action)) impossible_in_a_row_ = is_impossible ? impossible_in_a_row_ + 1 : 0;
     // A drawn belief may only have had too few particles, and a mixed one can be moved no more (moves.hpp). So the first
@@ -271,6 +256,24 @@ class BeliefCommands {
     if (all.size() != command.number<std::size_t>("beliefs")) throw BadCommand{"some of the beliefs are missing"};
     const auto words = from_base64<std::uint64_t>(command.text("words"));
     become(json, Hypotheses::of(std::move(all), words.value_or(Words{})));
+  }
+
+  // What a response makes of all that is believed, with the numbers beside it, or alone where no step reports just these.
+  Posteriors<Model> posteriors_of(const Command& command, int action, Observation observation, bool& has_other_numbers, Fault& uncorrected) {
+    const ObservedNumbers numbers = numbers_from(command.text("numbers"));
+    const auto locals = command.optional_text("locals");
+    const auto by = [&](const Belief<Model>& belief, auto&& sink) {
+      return locals ? corrected_posterior(belief, action, observation, sink, *locals, uncorrected)
+                    : belief.posterior(action, observation, sink, random_);
+    };
+    auto found = believed_.posteriors([&](const Belief<Model>& belief) { return by(belief, WeighedNumbers{numbers}); });
+    if (!found.are_empty() || Model::number_count(Model::skill_of(action)) == 0) return found;
+    has_other_numbers = believed_.posteriors([&](const Belief<Model>& belief) {
+      WeighedNumbers reported{numbers, /*by_value=*/false};
+      return belief.posterior(action, observation, reported, random_);
+    }).are_empty();
+    if (has_other_numbers) found = believed_.posteriors([&](const Belief<Model>& belief) { return by(belief, ignored_numbers); });
+    return found;
   }
 
   std::pair<Belief<Model>, double> corrected_posterior(const Belief<Model>& belief, int action, Observation observation,

@@ -52,43 +52,16 @@ class SeekPlaces {
     ends_.clear();
     ways_.clear();
     after_.clear();
-    std::unordered_map<std::uint64_t, std::uint32_t> known;
+    known_.clear();
+    reports_.resize(belief.size());
     const std::size_t actions = Model::action_count();
     places_.push_back({belief.states()});
-    known.emplace(running_down.place_of(places_[0].states), 0);
-    List<StepReports> reports(belief.size());
+    known_.emplace(running_down.place_of(places_[0].states), 0);
     const double least = steps / 2;
     for (std::uint32_t number = 0; number < places_.size() && steps > least; ++number) {
       places_[number].moves.resize(actions);
       for (std::size_t a = 0; a < actions; ++a) {
-        if (barred.contains(a)) continue;
-        List<State> next = places_[number].states;
-        const Sampler luck{random.bits()};
-        double reward = 0, running = 0, failing = 0;
-        bool tells = false;
-        for (std::size_t k = 0; k < next.size(); ++k) {
-          Sampler same = luck;
-          reward += belief.weights()[k] * reported_.take(next[k], a, reports[k], steps, same);
-          running += Model::ending(next[k]) == Ending::running ? belief.weights()[k] : 0;
-          failing += Model::ending(next[k]) == Ending::failure ? belief.weights()[k] : 0;
-          tells = tells || !reports[k].is_like(reports[0]);
-        }
-        places_[number].moves[a].paid = reward;
-        if (running < 0.5) {
-          if (failing < 0.5) ends_.push_back({number, static_cast<int>(a), reward});
-          continue;
-        }
-        if (tells) {
-          add_test(number, a, reward, reports, next);
-          continue;
-        }
-        const auto [entry, is_new] = known.emplace(running_down.place_of(next), static_cast<std::uint32_t>(places_.size()));
-        if (is_new && places_.size() >= most_places) {
-          known.erase(entry);
-          continue;
-        }
-        places_[number].moves[a].next = entry->second;
-        if (is_new) places_.push_back({std::move(next)});
+        if (!barred.contains(a)) take(number, a, belief, running_down, steps, random);
       }
     }
     for (Place& place : places_) place.moves.resize(actions);
@@ -132,15 +105,42 @@ class SeekPlaces {
   static constexpr int cells_of_numbers = 6;
   static constexpr int quantiles = 16;
 
-  void add_test(std::uint32_t place, int action, double reward, const List<StepReports>& reports, List<State>& next) {
+  // Takes an action at a place from all states. It is an end, a test, or a move to a place.
+  void take(std::uint32_t number, int action, const SampledBelief<Model>& belief, RunningDown<Model>& running_down, double& steps, Sampler& random) {
+    List<State> next = places_[number].states;
+    const Sampler luck{random.bits()};
+    double reward = 0, running = 0, failing = 0;
+    bool tells = false;
+    for (std::size_t k = 0; k < next.size(); ++k) {
+      Sampler same = luck;
+      reward += belief.weights()[k] * reported_.take(next[k], action, reports_[k], steps, same);
+      running += Model::ending(next[k]) == Ending::running ? belief.weights()[k] : 0;
+      failing += Model::ending(next[k]) == Ending::failure ? belief.weights()[k] : 0;
+      tells = tells || !reports_[k].is_like(reports_[0]);
+    }
+    Move& move = places_[number].moves[action];
+    move.paid = reward;
+    if (running < 0.5) {
+      if (failing < 0.5) ends_.push_back({number, action, reward});
+      return;
+    }
+    if (tells) return add_test(number, action, reward, next);
+    const auto place = static_cast<std::uint32_t>(places_.size());
+    const std::uint64_t key = running_down.place_of(next);
+    if (place >= most_places && !known_.contains(key)) return;
+    move.next = known_.emplace(key, place).first->second;
+    if (move.next == place) places_.push_back({std::move(next)});
+  }
+
+  void add_test(std::uint32_t place, int action, double reward, List<State>& next) {
     Test test{place, action, reward, 0};
-    const List<Observation> responses = few_responses(reports);
+    const List<Observation> responses = few_responses(reports_);
     if (!responses.empty()) {
       test.outcomes = responses.size();
-      for (const StepReports& report : reports) {
+      for (const StepReports& report : reports_) {
         for (const Observation response : responses) test.own.push_back(report.likelihood({response, {}}));
       }
-    } else if (!by_cells(reports, test)) {
+    } else if (!by_cells(test)) {
       return;
     }
     tests_.push_back(std::move(test));
@@ -149,11 +149,11 @@ class SeekPlaces {
   }
 
   // A number that is reported falls into one of a few cells of about the same probability.
-  bool by_cells(const List<StepReports>& reports, Test& test) {
+  bool by_cells(Test& test) const {
     List<double> all;
-    List<List<double>> own(reports.size());
-    for (std::size_t k = 0; k < reports.size(); ++k) {
-      const auto& branches = reports[k].branches();
+    List<List<double>> own(reports_.size());
+    for (std::size_t k = 0; k < reports_.size(); ++k) {
+      const auto& branches = reports_[k].branches();
       if (branches.size() != 1 || branches[0].numbers.size() != 1) return false;
       for (int i = 0; i < quantiles; ++i) own[k].push_back(branches[0].numbers[0].second.quantile((i + 0.5) / quantiles));
       all.insert(all.end(), own[k].begin(), own[k].end());
@@ -172,6 +172,8 @@ class SeekPlaces {
   }
 
   ReportedStep<Model> reported_;
+  List<StepReports> reports_;  // of the action at hand, by state
+  std::unordered_map<std::uint64_t, std::uint32_t> known_;  // places
   List<Place> places_;
   List<Test> tests_;
   List<List<State>> after_;  // by test
