@@ -75,12 +75,6 @@ struct OnlineSarsop::Solver {
     return found;
   }
 
-  std::optional<PolicyValue> best_policy(std::size_t steps, bool decides_anew, std::uint64_t max_work, const IsOver& is_over,
-                                         std::uint64_t& work) {
-    auto is_late = seldom(is_over);
-    return played(max_work, is_late, work, [&](Asked ends, Uniform uniform) { return sarsop.best_policy(steps, decides_anew, ends, is_late, uniform); });
-  }
-
   FlatModel model;
   Outlook outlook;
   Regions regions;
@@ -122,16 +116,11 @@ List<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::size_t steps, 
   });
 }
 
-std::optional<PolicyValue> OnlineSarsop::best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over,
-                                                    std::uint64_t& work) {
-  if (!switches::simple_policies || !solver_->sarsop.has_start() || solver_->is_nearly_closed()) return std::nullopt;
-  return solver_->best_policy(steps, false, max_work, is_over, work);
-}
-
-std::optional<PolicyValue> OnlineSarsop::best_policy_anew(std::size_t steps, std::uint64_t max_work, const IsOver& is_over,
-                                                         std::uint64_t& work) {
-  if (!solver_->sarsop.has_start()) return std::nullopt;
-  return solver_->best_policy(steps, true, max_work, is_over, work);
+std::optional<PolicyValue> OnlineSarsop::best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over, std::uint64_t& work, bool decides_anew) {
+  Sarsop& sarsop = solver_->sarsop;
+  if (!sarsop.has_start() || (!decides_anew && (!switches::simple_policies || solver_->is_nearly_closed()))) return std::nullopt;
+  auto is_late = solver_->seldom(is_over);
+  return solver_->played(max_work, is_late, work, [&](Asked ends, Uniform uniform) { return sarsop.best_policy(steps, decides_anew, ends, is_late, uniform); });
 }
 
 List<ActionBounds> OnlineSarsop::action_bounds() {

@@ -78,11 +78,9 @@ class OnlineSarsop {
 
   // The best of some simple policies from the belief, by missions of `steps` decisions; none where the bounds have nearly met,
   // where too few missions fit the work, and where it does not return more than the lower bound by a standard error. The one that was
-  // found last needs no standard error. Adds the work to `work`.
-  std::optional<PolicyValue> best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over, std::uint64_t& work);
-  // The best of them where each decision has the whole horizon to go, whatever the bounds; none where too few missions fit
-  // the work. Adds the work to `work`.
-  std::optional<PolicyValue> best_policy_anew(std::size_t steps, std::uint64_t max_work, const IsOver& is_over, std::uint64_t& work);
+  // found last needs no standard error. Where it `decides_anew`, each decision has the whole horizon to go, and bounds do not matter.
+  // Adds the work to `work`.
+  std::optional<PolicyValue> best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over, std::uint64_t& work, bool decides_anew = false);
 
   // The bounds of all actions at the belief moved to: discounted, over the whole horizon. These bounds and
   // those of `bounds` hold in spite of rounding.

@@ -113,9 +113,7 @@ class Belief {
       ParticleFilter<Model>{random}.draw_observations(particles(), action, add);
     }
     ObservationOdds sorted(odds.begin(), odds.end());
-    std::sort(sorted.begin(), sorted.end(), [](const auto& left, const auto& right) {
-      return left.second != right.second ? left.second > right.second : left.first < right.first;
-    });
+    std::ranges::sort(sorted, {}, [](const auto& each) { return std::pair{-each.second, each.first}; });
     return sorted;
   }
 

@@ -1,7 +1,6 @@
 // A belief in which the probability of a variable's value is another one (Jeffrey's rule).
 #pragma once
 
-#include "aos/belief/saved_history.hpp"
 #include "aos/model/values.hpp"
 
 namespace aos {
@@ -36,7 +35,7 @@ class JeffreysRule {
       const double moved = has_value_[number] ? weight / with_ * probability : weight / without_ * (1 - probability);
       if (moved > 0) particles.push_back({state, moved});
     }
-    return Belief<Model>::of(with_history<Model>(std::move(particles), Words{}), belief_.error_bound(), belief_.is_drawn());
+    return Belief<Model>::of({std::move(particles), {}, {}}, belief_.error_bound(), belief_.is_drawn());
   }
 
  private:

@@ -37,17 +37,14 @@ class ObservedNumbers {
 
   // Returns false if there is a number with this key already.
   bool add(NumberKey key, double value) {
-    const auto place = numbers_.empty() || numbers_.back().key < key ? numbers_.end() : place_of(key);
+    const bool is_last = numbers_.empty() || numbers_.back().key < key;
+    const auto place = is_last ? numbers_.end() : std::ranges::lower_bound(numbers_, key, {}, &ObservedNumber::key);
     if (place != numbers_.end() && place->key == key) return false;
     numbers_.insert(place, {key, value});
     return true;
   }
 
  private:
-  ObservedNumber* place_of(NumberKey key) {
-    return std::lower_bound(numbers_.begin(), numbers_.end(), key,
-                            [](const ObservedNumber& number, NumberKey sought) { return number.key < sought; });
-  }
   List<ObservedNumber> numbers_;
 };
 

@@ -77,7 +77,7 @@ struct ErasedModel {
   static std::size_t bytes_elsewhere() { return Size == 0 ? state_bytes() : 0; }
 
   template <class Random>
-  static void initial(State& state, Random& random) { functions<Random>().initial(state.bytes, random); }
+  static void initial(State& state, Random& random) { functions(random).initial(state.bytes, random); }
   // Makes a state one in which a mission begins, after so many steps of extrinsic changes alone. Whether an earlier mission
   // has ended there, makes no difference.
   static void begin(State& state, int idle_steps, DirectedDraws& random) {
@@ -96,7 +96,7 @@ struct ErasedModel {
         return {};
       }
     }
-    return functions<Random>().step(state.bytes, action, random);
+    return functions(random).step(state.bytes, action, random);
   }
   // As long as this object lives, directed steps are corrected where they give this observation. Belief updates use it.
   struct Correcting : SetForNow<std::optional<Observation>> {
@@ -155,14 +155,8 @@ struct ErasedModel {
 
   inline static std::optional<Observation> corrected_;
 
-  template <class Random>
-  static const auto& functions() {
-    if constexpr (std::is_same_v<Random, Sampler>) {
-      return compiled_model.sampling;
-    } else {
-      return compiled_model.directed;
-    }
-  }
+  static const auto& functions(const Sampler&) { return compiled_model.sampling; }
+  static const auto& functions(const DirectedDraws&) { return compiled_model.directed; }
 };
 
 }

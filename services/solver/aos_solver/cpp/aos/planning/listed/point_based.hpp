@@ -115,7 +115,7 @@ class PointBased {
     if (policy_tries_.is_due()) try_policies(most_of_policies, policies_are_over, work);
     if (!policy_) try_until(1 - share_of_missions, policies_are_over);
     const Operations most_of_anew = std::max<Operations>(work_of(share_of_anew), most > 0);
-    anew_ = search_->best_policy_anew(static_cast<std::size_t>(horizon_), most_of_anew, anew_is_over, work);
+    anew_ = search_->best_policy(static_cast<std::size_t>(horizon_), most_of_anew, anew_is_over, work, /*decides_anew=*/true);
     if (!policy_ && (most == 0 || work < most) && !is_over()) work += play(choice(), most == 0 ? 0 : most - work, is_over);
     try_until(1, is_over);
     const std::uint64_t simulations = Budget::simulations_of(searched, horizon_);

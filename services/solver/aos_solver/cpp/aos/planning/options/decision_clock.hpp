@@ -5,22 +5,15 @@
 #include <limits>
 
 #include "aos/base/clock.hpp"
+#include "aos/base/set_for_now.hpp"
 
 namespace aos {
 
 class DecisionClock {
  public:
   // Lets what is done in its scope take so many seconds of those that are left.
-  class Slice {
-   public:
-    Slice(DecisionClock& clock, double seconds) : clock_(clock), end_s_(clock.end_s_) { clock.end_s_ = std::min(end_s_, clock.spent_s() + seconds); }
-    ~Slice() { clock_.end_s_ = end_s_; }
-    Slice(const Slice&) = delete;
-    Slice& operator=(const Slice&) = delete;
-
-   private:
-    DecisionClock& clock_;
-    double end_s_;
+  struct Slice : SetForNow<double> {
+    Slice(DecisionClock& clock, double seconds) : SetForNow(clock.end_s_, std::min(clock.end_s_, clock.spent_s() + seconds)) {}
   };
 
   // Begins a decision of so many seconds; 0 are no limit.
