@@ -146,11 +146,9 @@ def _check_complete(
         # A skill whose mapping is missed is the likeliest one to be meant.
         meant = nearest(name, sorted(skills - mappings)) or nearest(name, sorted(skills))
         hint = f"Did you mean `{meant}`?" if meant else f"Add {name}.sd, or a JSON document of type PLP"
-        findings.error("AOS114", f"the abstraction mapping {name} has no skill document", span, hint)
+        message = f"the abstraction mapping {name} has no skill document"
         if meant in skills - mappings:
-            # Either of the two names may be the wrong one.
-            span = unique[DocumentKind.SKILL, meant].span
-            message = f"the skill {meant} has no abstraction mapping, and the mapping {name} no skill"
-            findings.error("AOS114", message, span, f"Did you mean `{name}`?")
+            message += f", and the skill {meant} has no mapping"
+        findings.error("AOS114", message, span, hint)
     if not skills and not mappings:
         findings.error("AOS105", "there are no skills", bundle, "Add .sd files")

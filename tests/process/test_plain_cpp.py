@@ -49,6 +49,8 @@ state.kept = {{3, 1}, {1, 2}, {3, 1}};
 
 state_variable: std::unordered_map<Chosen, set<int>> sorted
 
+state_variable: string note
+
 state_variable: map<int, int> stock
 code:
 state.stock = {{1, 5}, {4, 6}};
@@ -92,8 +94,24 @@ CODE = {
     ),
     "stream": ('std::stringstream text("4 5"); int a, b; text >> a >> b; __reward = a + b;', 9),
     "flags": (
-        "state__.flags.flip(); __reward = state__.flags[1] - state__.flags[0]; state__.flags = state.flags;",
-        1,
+        "state__.flags[1].flip(); state__.flags.flip(); vector<bool> mine{true, true}; mine[1].flip();"
+        "__reward = state__.flags[1] + 2 * state.flags[0] + 4 * mine[1]; state__.flags = state.flags;",
+        2,
+    ),
+    "texts": (
+        'std::istringstream in("4 six"), parts("ab;c"); in >> state__.row[0] >> state__.note;'
+        "__reward = state__.note.find_first_of('x') + 10 * state__.note.append(3, 'x').size();"
+        "auto& note = state__.note; std::getline(parts, state__.note, ';');"
+        "note.erase(std::remove(note.begin(), note.end(), 'a'), note.end());"
+        '__reward += 100 * state.row[0] + (note == "b"); state__.row = state.row;',
+        2 + 60 + 300 + 1,
+    ),
+    "lists": (
+        "state__.grid.emplace_back(2, 5); __reward = state__.grid[2].size() * 10 + state__.grid[2][0];"
+        "state__.last.swap(state__.other); __reward += 100 * state__.last.size();"
+        "state__.last.swap(state__.other); std::pair<int, int> spot{9, 9}; std::swap(state__.spot, spot);"
+        "__reward += spot.first; state__.spot = spot; state__.grid = state.grid;",
+        20 + 5 + 200 + 2,
     ),
     "order": ("__reward = state.row < state.other && state.row >= vector<int>{1, 2};", 1),
     "then": ("auto then = state; then.third.weight = 5; __reward = then.third.weight;", 5),

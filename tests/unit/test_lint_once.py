@@ -221,6 +221,22 @@ def test_what_a_reference_changes_may_change(code, told):
     assert lines == ([told] if told else [])
 
 
+@pytest.mark.parametrize(
+    "code",
+    [
+        "std::sort(state__.CellObjects.begin(), state__.CellObjects.end());",
+        "std::swap(state__.CellObjects[0], state__.CellObjects[1]);",
+        "state__.CellObjects.clear();",
+    ],
+)
+def test_a_list_of_objects_that_is_changed_is_told_once_with_what_may_change(code):
+    (told,) = found(skill=skill_after(code))
+    assert (told.code, told.span.line) == ("AOS128", 9)
+    assert told.hint == "Change a copy of it: `auto list = state__.CellObjects;`"
+    copied = "auto list = state__.CellObjects; std::sort(list.begin(), list.end()); list[0]->x = 1;"
+    assert not found(skill=skill_after(copied))
+
+
 def test_a_list_and_a_loop_without_objects_are_told_once():
     environment = ENVIRONMENT.replace("state_variable: Cell", "action_parameter: Cell")
     environment = environment.replace("initial_belief:\nstate.first.x", "initial_belief:\nint x")

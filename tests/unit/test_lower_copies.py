@@ -66,6 +66,8 @@ def test_one_object_does_where_all_is_read_before_it_is_written(act):
         "auto at = std::ranges::find(state.row, 2); state__.row[1] = 5; __reward = *at;",
         "auto turned = state.row | std::views::reverse; state__.row[1] = 5; __reward = *turned.begin();",
         "struct Now { const int& level; }; Now now{state.level}; state__.level = 5; __reward = now.level;",
+        "state__.row.flip(); __reward = state.row[0];",
+        'std::istringstream("4") >> state__.level; __reward = state.level;',
         "std::span<int> row(state__.row); row[0] = 5; __reward = state.row[0];",
     ],
 )

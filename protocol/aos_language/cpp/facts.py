@@ -8,8 +8,9 @@ import msgspec
 from aos_language.cpp.tokens import Extent, Fault
 
 CHANGING_METHODS = frozenset({
-    "append", "assign", "clear", "emplace", "emplace_back", "erase", "fill", "insert", "insert_or_assign",
-    "pop", "pop_back", "push", "push_back", "reserve", "resize", "swap", "try_emplace",
+    "append", "assign", "clear", "emplace", "emplace_back", "erase", "fill", "flip", "insert",
+    "insert_or_assign", "pop", "pop_back", "push", "push_back", "replace", "reserve", "resize", "swap",
+    "try_emplace",
 })  # fmt: skip
 HANDLE_METHODS = frozenset({
     "begin", "data", "end", "equal_range", "find", "lower_bound", "rbegin", "rend", "upper_bound",

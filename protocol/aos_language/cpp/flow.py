@@ -407,7 +407,7 @@ def _is_effect(node: tree_sitter.Node, functions: _Functions) -> bool:
     if node.type == "pointer_expression":
         return node.children[0].type == "&"
     if node.type == "binary_expression" and text_of(node.children[1]) in ("<<", ">>"):
-        return node.children[0].type == "identifier"  # It may be a stream.
+        return node.children[0].type in ("call_expression", "identifier")  # It may be a stream.
     return node.type in _EFFECTS or (node.type == "call_expression" and _may_change(node, functions))
 
 

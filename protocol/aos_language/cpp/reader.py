@@ -19,7 +19,7 @@ from aos_language.cpp.facts import (
     Mention,
 )
 from aos_language.cpp.idle import idle_parts, is_turned
-from aos_language.cpp.nodes import below, child_of, names_of, picks_member, text_of
+from aos_language.cpp.nodes import below, child_of, names_of, operator_of, picks_member, text_of
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 from aos_protocol.spelling import nearest
 
@@ -107,6 +107,11 @@ class TreeReader:
             message, hint = f"`{text_of(label)}:` is a label", "Did you mean `default:`?"
             self.faults.append(Fault(FaultKind.SYNTAX, message, self.extent(label), hint))
         self._push(node.children[1:])
+
+    def _binary(self, node: tree_sitter.Node, access: Access) -> None:
+        """What stands behind `>>` may get its value from a stream."""
+        self._push(node.children[:-1])
+        self._push(node.children[-1:], Access.BIND if operator_of(node) == ">>" else Access.READ)
 
     def _comma(self, node: tree_sitter.Node, access: Access) -> None:
         """A comma that drops what stands before it; between two digits it was meant as a point."""
@@ -372,6 +377,7 @@ class TreeReader:
 _HANDLERS = {
     "assignment_expression": TreeReader._assignment,
     "call_expression": TreeReader._call,
+    "binary_expression": TreeReader._binary,
     "comma_expression": TreeReader._comma,
     "comment": TreeReader._skip,
     "conditional_expression": TreeReader._conditional,

@@ -23,6 +23,12 @@ _OWN_TYPE = re.compile(r"\b(?:class|struct|union)\b")
 """Code with a type of its own may set that one's fields by their names."""
 
 
+_ORDERING = frozenset({
+    "iter_swap", "nth_element", "partial_sort", "partition", "random_shuffle", "remove", "remove_if", "reverse",
+    "rotate", "shuffle", "sort", "stable_partition", "stable_sort", "swap", "unique",
+})  # fmt: skip
+
+
 class MentionCheck:
     """The names of one snippet; `declared` are those that code around it declares."""
 
@@ -162,6 +168,10 @@ class MentionCheck:
             span = self._part_span(mention.extent, name)
             self._findings.unknown(name, known, f"unknown state variable `{name}`", span, otherwise)
             return
+        if name not in self._scope.variables and self._reorders(mention):
+            hint = f"Change a copy of it: `auto list = {mention.path[0]}.{name};`"
+            message = f"the list `{name}` keeps its objects in their order"
+            self._findings.error("AOS128", message, self._part_span(mention.extent, name), hint)
         if self._scope.lacks_objects(name.removesuffix("Objects")):
             span = self._part_span(mention.extent, name)
             check_objects(name.removesuffix("Objects"), f"`{name}` is empty", span, self._findings)
@@ -176,6 +186,13 @@ class MentionCheck:
         elif not self._block.role.may_set_parameter_values:
             hint = "Values of action parameters are constants; set them where they are declared"
             self._constant_written(mention, name, hint)
+
+    def _reorders(self, mention: Mention) -> bool:
+        """Returns whether a list of objects would be changed itself, once for each statement."""
+        given = ((call.name[-1:], place.start) for call in self._cpp.calls for place in call.arguments[:1])
+        names = {name for parts, start in given if start == mention.extent.start for name in parts}
+        is_written = mention.access in (Access.WRITE, Access.UPDATE)
+        return mention.path[2:] in ((), ("[]",)) and (is_written or not _ORDERING.isdisjoint(names))
 
     def _check_named_path(self, mention: Mention, root: str) -> None:
         if root in self._block.constants and mention.access in (Access.WRITE, Access.UPDATE):

@@ -18,13 +18,14 @@ _FUNCTION_OF_REFERENCE = re.compile(
     r"((?:std\s*::\s*)?function\s*<.*(?:vector|map|string)\b[^;]*&[^;]*>)\s*$"
 )
 _STD = re.compile(r"std\s*::\s*")
-_OF_VECTORS = frozenset({"erase", "erase_if", "swap"})
+_OF_STATE = frozenset({"erase", "erase_if", "getline", "swap"})
 _ITERATOR = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map|set|string)\b[^\n;(){}]*::\s*(?:const_)?(?:reverse_)?iterator)\s+$"
 )
 _VECTOR = re.compile(r"(?:^|[;{}])\s*((const\s+)?(?:std\s*::\s*)?vector\s*<[^;(){}]*>\s*)$")
 _WEIGHTS = re.compile(r"\s*(?:std\s*::\s*)?vector\s*<\s*double\s*>\s*(?=\{)")
 _READING_METHODS = frozenset({"at", "back", "cbegin", "cend", "empty", "front", "size"})
+_FLIPPED = re.compile(r"(?<=\])\s*\.\s*flip\s*\(\s*\)\Z")
 _LITERAL = re.compile(r"[-+\s{},]|\d[\w.]*|\.\d\w*")
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _LOOPS_OVER = re.compile(r"\s*:(?!:)\s*")
@@ -38,7 +39,9 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
     - `vector<int>* row = &state__.row;` becomes `auto* row`
     - `std::function<void(vector<int>&)> grow = [](...) {...}` becomes `auto grow`
     - `mine.swap(state__.row)` becomes `swap(mine, state__.row)`
-    - `std::swap`, `std::erase` and `std::erase_if` lose their `std::`: those of state variables are not there
+    - `state__.bits[1].flip()` becomes `aos::flip(state__.bits[1])`
+    - `std::swap`, `std::erase`, `std::erase_if` and `std::getline` lose their `std::`: those of state variables
+      are not there
     - a vector of constants that is only read becomes `static const`
     - `AOS.SampleDiscrete(vector<double>{0.5, 0.5})` becomes `AOS.SampleDiscrete({0.5, 0.5})`
     """
@@ -49,8 +52,11 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
             if weights is not None and _is_constant(cpp.code[weights.end() : call.arguments[-1].end], values):
                 yield weights.start(), weights.end(), ""
         prefix = _STD.match(cpp.code, call.extent.start)
-        if prefix is not None and call.name[-1] in _OF_VECTORS - own:
+        if prefix is not None and call.name[-1] in _OF_STATE - own:
             yield prefix.start(), prefix.end(), ""
+        if (flipped := _FLIPPED.search(cpp.code, call.extent.start, call.extent.end)) is not None:
+            yield call.extent.start, call.extent.start, "aos::flip("
+            yield flipped.start(), call.extent.end, ")"
         if call.name[1:] == ("swap",) and call.name[0] in own and call.arguments:
             yield call.extent.start, call.extent.start, "swap("
             yield call.extent.start + len(call.name[0]), call.arguments[0].start, ", "

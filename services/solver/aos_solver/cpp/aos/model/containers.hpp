@@ -34,6 +34,8 @@ class Elements {
     requires std::is_constructible_v<U, const T&>
   operator std::vector<U>() const { return std::vector<U>(begin(), end()); }
 
+  T& at(auto index) { return self()[index]; }
+  const T& at(auto index) const { return self()[index]; }
   T& front() { return self()[std::ptrdiff_t{0}]; }
   const T& front() const { return self()[std::ptrdiff_t{0}]; }
   T& back() { return self()[static_cast<std::ptrdiff_t>(self().size()) - 1]; }
@@ -84,8 +86,6 @@ class Vector : public Elements<Vector<T, Capacity>, T> {
 
   T& operator[](std::ptrdiff_t index) { return values_[checked(index)]; }
   const T& operator[](std::ptrdiff_t index) const { return values_[checked(index)]; }
-  T& at(std::ptrdiff_t index) { return (*this)[index]; }
-  const T& at(std::ptrdiff_t index) const { return (*this)[index]; }
   T* data() { return values_; }
   const T* data() const { return values_; }
 
@@ -93,9 +93,8 @@ class Vector : public Elements<Vector<T, Capacity>, T> {
     const T copy = value;
     values_[grown(1)] = copy;
   }
-  template <class... Arguments>
-  T& emplace_back(Arguments&&... arguments) {
-    push_back(T{std::forward<Arguments>(arguments)...});
+  T& emplace_back(const auto&... parts) {
+    push_back(made(parts...));
     return back();
   }
   void pop_back() {
@@ -153,21 +152,18 @@ class Vector : public Elements<Vector<T, Capacity>, T> {
     size_ = static_cast<std::uint32_t>(to - values_);
     return values_ + (first - values_);
   }
-  template <class... Arguments>
-  T* emplace(const T* before, Arguments&&... arguments) {
-    return insert(before, T{std::forward<Arguments>(arguments)...});
-  }
+  T* emplace(const T* before, const auto&... parts) { return insert(before, made(parts...)); }
   void flip()
     requires std::same_as<T, bool>
   {
     for (bool& value : *this) value = !value;
   }
   void fill(const T& value) { assign(size_, value); }
-  void swap(Vector& other) { std::swap(*this, other); }
-  void swap(std::vector<T>& other) {
-    std::vector<T> mine = *this;
-    *this = Vector{other};
-    other = std::move(mine);
+  template <class Other>
+  void swap(Other& other) {
+    const Other mine(*this);
+    *this = Vector(other);
+    other = mine;
   }
 
   template <std::size_t OtherCapacity>
@@ -186,6 +182,13 @@ class Vector : public Elements<Vector<T, Capacity>, T> {
   friend bool operator==(const Vector& left, const std::vector<T>& right) { return std::vector<T>(left) == right; }
 
  private:
+  static T made(const auto&... parts) {
+    if constexpr (std::is_constructible_v<T, decltype(parts)...>) {
+      return T(parts...);
+    } else {
+      return T{parts...};
+    }
+  }
   std::size_t checked(std::ptrdiff_t index) const {
     if (static_cast<std::size_t>(index) >= size_) out_of_range(index, size_);
     return static_cast<std::size_t>(index);
@@ -214,10 +217,17 @@ std::size_t erase(Vector<T, Capacity>& values, const Value& value) {
   const Value erased = value;  // it may be an element
   return erase_if(values, [&](const T& other) { return other == erased; });
 }
-template <class T, std::size_t Capacity>
-void swap(Vector<T, Capacity>& left, std::vector<T>& right) { left.swap(right); }
-template <class T, std::size_t Capacity>
-void swap(std::vector<T>& left, Vector<T, Capacity>& right) { right.swap(left); }
+// A part of the state with what code holds in a standard type.
+template <class Left, class Right>
+  requires(std::convertible_to<Left, Right> && std::convertible_to<Right, Left> && !std::same_as<Left, Right>)
+void swap(Left& left, Right& right) {
+  const Right mine = left;
+  left = Left(right);
+  right = mine;
+}
+
+inline void flip(bool& element) { element = !element; }
+void flip(auto&& element) { element.flip(); }
 
 // `values[index]` of document code: a ModelFault where a vector, an array or a string has no such element.
 template <class Values, class Index>

@@ -38,8 +38,6 @@ class Named : public Elements<Named<E, Size, T>, T> {
   template <class Other>
     requires(std::is_enum_v<Other> && !std::same_as<Other, E>)
   const T& operator[](Other another_enum) const = delete;
-  T& at(auto index) { return (*this)[index]; }
-  const T& at(auto index) const { return (*this)[index]; }
   T* data() { return values_; }
   const T* data() const { return values_; }
 

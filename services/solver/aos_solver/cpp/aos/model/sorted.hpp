@@ -66,6 +66,7 @@ class Sorted : public Store {
   std::pair<iterator, iterator> equal_range(const Key& key) { return {lower_bound(key), upper_bound(key)}; }
   const T* lower_bound(const Key& key) const { return mine().lower_bound(key); }
   const T* upper_bound(const Key& key) const { return mine().upper_bound(key); }
+  std::pair<const T*, const T*> equal_range(const Key& key) const { return mine().equal_range(key); }
   const T* find(const Key& key) const { return mine().find(key); }
   bool contains(const Key& key) const { return find(key) != end(); }
   std::size_t count(const Key& key) const { return contains(key); }

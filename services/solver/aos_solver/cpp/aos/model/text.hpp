@@ -1,17 +1,16 @@
 // Text of fixed storage for state variables of type `string`.
 #pragma once
 
-#include <compare>
-#include <cstddef>
-#include <cstdint>
 #include <string>
 #include <string_view>
+
+#include "aos/model/containers.hpp"
 
 namespace aos {
 
 // Holds up to `max_length` characters in place, so that a state stays trivially copyable. A Text reads and
 // changes like a std::string. Longer text is a ModelFault.
-class Text {
+class Text : public Elements<Text, char> {
  public:
   static constexpr std::size_t max_length = 62;
   static constexpr std::size_t npos = std::string::npos;
@@ -20,6 +19,7 @@ class Text {
   Text(const char* text) { assign(text); }
   Text(std::string_view text) { assign(text); }
   Text(const std::string& text) { assign(text); }
+  Text(auto first, auto second) : Text(std::string(first, second)) {}
 
   Text& operator+=(std::string_view more) {
     if (length_ + more.size() > max_length) overflow(length_ + more.size());
@@ -40,17 +40,18 @@ class Text {
   void resize(std::size_t size, char filling = '\0') {
     changed([&](std::string& text) { text.resize(size, filling); });
   }
-  template <class... Arguments>
-  Text& insert(Arguments... arguments) {
-    return changed([&](std::string& text) { text.insert(arguments...); });
+  Text& append(auto first, auto second) {
+    return changed([&](std::string& text) { text.append(first, second); });
   }
-  template <class... Arguments>
-  Text& erase(Arguments... arguments) {
-    return changed([&](std::string& text) { text.erase(arguments...); });
+  void assign(auto first, auto second) { *this = Text(first, second); }
+  Text& insert(auto... arguments) {
+    return changed([&](std::string& text) { text.insert(in(text, arguments)...); });
   }
-  template <class... Arguments>
-  Text& replace(Arguments... arguments) {
-    return changed([&](std::string& text) { text.replace(arguments...); });
+  Text& erase(auto... arguments) {
+    return changed([&](std::string& text) { text.erase(in(text, arguments)...); });
+  }
+  Text& replace(auto... arguments) {
+    return changed([&](std::string& text) { text.replace(in(text, arguments)...); });
   }
 
   operator std::string() const { return str(); }
@@ -58,47 +59,42 @@ class Text {
   std::string str() const { return std::string{view()}; }
   std::string_view view() const { return {characters_, length_}; }
   const char* c_str() const { return characters_; }
+  const char* data() const { return characters_; }
+  char* data() { return characters_; }
 
   std::size_t size() const { return length_; }
   std::size_t length() const { return length_; }
   bool empty() const { return length_ == 0; }
   char& operator[](std::size_t index) { return characters_[checked(index)]; }
   const char& operator[](std::size_t index) const { return characters_[checked(index)]; }
-  char& at(std::size_t index) { return (*this)[index]; }
-  const char& at(std::size_t index) const { return (*this)[index]; }
-  char& front() { return (*this)[0]; }
-  char& back() { return (*this)[length_ - std::size_t{1}]; }
-  const char& front() const { return (*this)[0]; }
-  const char& back() const { return (*this)[length_ - std::size_t{1}]; }
-  char* begin() { return characters_; }
-  char* end() { return characters_ + length_; }
-  const char* begin() const { return characters_; }
-  const char* end() const { return characters_ + length_; }
-  const char* cbegin() const { return begin(); }
-  const char* cend() const { return end(); }
-  auto rbegin() const { return view().rbegin(); }
-  auto rend() const { return view().rend(); }
   std::string substr(std::size_t from = 0, std::size_t count = npos) const { return str().substr(from, count); }
-  std::size_t find(std::string_view part, std::size_t from = 0) const { return view().find(part, from); }
-  std::size_t find(char part, std::size_t from = 0) const { return view().find(part, from); }
-  std::size_t rfind(std::string_view part, std::size_t from = npos) const { return view().rfind(part, from); }
-  std::size_t rfind(char part, std::size_t from = npos) const { return view().rfind(part, from); }
-  std::size_t find_first_of(std::string_view any, std::size_t from = 0) const { return view().find_first_of(any, from); }
-  std::size_t find_last_of(std::string_view any, std::size_t from = npos) const { return view().find_last_of(any, from); }
-  std::size_t find_first_not_of(std::string_view any, std::size_t from = 0) const {
-    return view().find_first_not_of(any, from);
-  }
-  std::size_t find_last_not_of(std::string_view any, std::size_t from = npos) const {
-    return view().find_last_not_of(any, from);
-  }
-  bool starts_with(std::string_view part) const { return view().starts_with(part); }
-  bool ends_with(std::string_view part) const { return view().ends_with(part); }
-  int compare(std::string_view other) const { return view().compare(other); }
+  auto find(const auto&... sought) const { return view().find(sought...); }
+  auto rfind(const auto&... sought) const { return view().rfind(sought...); }
+  auto find_first_of(const auto&... sought) const { return view().find_first_of(sought...); }
+  auto find_last_of(const auto&... sought) const { return view().find_last_of(sought...); }
+  auto find_first_not_of(const auto&... sought) const { return view().find_first_not_of(sought...); }
+  auto find_last_not_of(const auto&... sought) const { return view().find_last_not_of(sought...); }
+  bool starts_with(const auto& part) const { return view().starts_with(part); }
+  bool ends_with(const auto& part) const { return view().ends_with(part); }
+  int compare(const auto&... others) const { return view().compare(others...); }
 
   friend bool operator==(const Text& left, const Text& right) { return left.view() == right.view(); }
   friend auto operator<=>(const Text& left, const Text& right) { return left.view() <=> right.view(); }
   friend std::string operator+(const Text& left, const Text& right) { return left.str().append(right.view()); }
   friend std::string operator+(const Text& left, char right) { return left.str() + right; }
+  friend std::string operator+(char left, const Text& right) { return left + right.str(); }
+  friend auto& operator>>(auto& in, Text& text) {
+    std::string word;
+    in >> word;
+    text = word;
+    return in;
+  }
+  friend auto& getline(auto& in, Text& text, char end = '\n') {
+    std::string line;
+    std::getline(in, line, end);
+    text = line;
+    return in;
+  }
   template <class Stream>
   friend Stream& operator<<(Stream& out, const Text& text) { return static_cast<Stream&>(out << text.view()); }
 
@@ -110,6 +106,14 @@ class Text {
   [[noreturn, gnu::cold]] static void no_character(std::ptrdiff_t index, std::size_t size);
   [[noreturn, gnu::cold]] static void overflow(std::size_t size);
 
+  // An iterator of this text as one of its copy; what is no iterator as it is.
+  auto in(std::string& copy, auto argument) const {
+    if constexpr (std::is_same_v<decltype(argument), char*>) {
+      return copy.begin() + (argument - characters_);
+    } else {
+      return argument;
+    }
+  }
   Text& changed(auto&& change) {
     std::string text = str();
     change(text);
