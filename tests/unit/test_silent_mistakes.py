@@ -119,6 +119,8 @@ def test_a_field_of_the_input_in_brackets_is_told_as_an_attribute(code, right):
         ("str(steps) == Left", "A value of Side is a text here: write `'Left'`"),
         ("math.isnan(steps)", "It is a module of Python: import it"),
         ("steps => 1", "Python writes `>=`"),
+        ("steps < 1,5", "A decimal is written with a point"),
+        ("steps == 1 or 2", "Write each comparison in full"),
     ],
 )
 def test_a_name_of_another_place_is_told_with_what_python_writes(rule, hint):

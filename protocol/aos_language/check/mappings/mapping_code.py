@@ -133,6 +133,8 @@ def _check_rules(
             if snippet is not None:
                 tree = _check_expression(snippet, names.of_rules(before), findings, severity)
                 before += [tree] if tree is not None else []
+                if tree is not None and snippet is rule.condition:
+                    _check_condition(snippet, tree, findings)
         if model is not None and scope.has_environment:
             for assignment in rule.assignments:
                 _check_assigned(assignment, model, scope, findings)
@@ -147,6 +149,18 @@ def _check_expression(
     if tree is not None:
         python_names.check_names(snippet, tree, names, findings, severity)
     return tree
+
+
+def _check_condition(condition: Snippet, tree: ast.AST, findings: Findings) -> None:
+    """Warns of a part that Python takes for true whatever it is: `a < 0,2`, and the 2 of `a == 1 or 2`."""
+    body = getattr(tree, "body", None)
+    for part in body.values if isinstance(body, ast.BoolOp) else [body]:
+        listed = part.elts if isinstance(part, ast.List | ast.Set | ast.Tuple) else []
+        is_value = part is not body and isinstance(part, ast.Constant) and not isinstance(part.value, bool)
+        if (is_value and part.value) or listed[isinstance(part, ast.Tuple) :]:
+            message = f"`{ast.unparse(part)}` is no condition, and counts as true"
+            hint = "Write each comparison in full" if is_value else "A decimal is written with a point"
+            findings.warning("AOS149", message, place_in(condition, (listed or [part])[0]), hint)
 
 
 def _check_variable(
