@@ -109,7 +109,7 @@ class TreeReader:
         self._push(node.children[1:])
 
     def _binary(self, node: tree_sitter.Node, access: Access) -> None:
-        """What stands behind `>>` may get its value from a stream."""
+        """Takes what stands behind `>>` as changed, since a stream may set it."""
         self._push(node.children[:-1])
         self._push(node.children[-1:], Access.BIND if operator_of(node) == ">>" else Access.READ)
 

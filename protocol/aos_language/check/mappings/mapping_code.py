@@ -153,11 +153,12 @@ def _check_expression(
 
 def _check_condition(condition: Snippet, tree: ast.AST, findings: Findings) -> None:
     """Warns of a part that Python takes for true whatever it is: `a < 0,2`, and the 2 of `a == 1 or 2`."""
-    body = getattr(tree, "body", None)
+    body = tree.body if isinstance(tree, ast.Expression) else ast.Constant(value=True)
     for part in body.values if isinstance(body, ast.BoolOp) else [body]:
         listed = part.elts if isinstance(part, ast.List | ast.Set | ast.Tuple) else []
-        is_value = part is not body and isinstance(part, ast.Constant) and not isinstance(part.value, bool)
-        if (is_value and part.value) or listed[isinstance(part, ast.Tuple) :]:
+        value = part.value if isinstance(part, ast.Constant) and part is not body else None
+        is_value = bool(value) and value is not True
+        if is_value or listed[isinstance(part, ast.Tuple) :]:
             message = f"`{ast.unparse(part)}` is no condition, and counts as true"
             hint = "Write each comparison in full" if is_value else "A decimal is written with a point"
             findings.warning("AOS149", message, place_in(condition, (listed or [part])[0]), hint)

@@ -24,8 +24,8 @@ _OWN_TYPE = re.compile(r"\b(?:class|struct|union)\b")
 
 
 _ORDERING = frozenset({
-    "iter_swap", "nth_element", "partial_sort", "partition", "random_shuffle", "remove", "remove_if", "reverse",
-    "rotate", "shuffle", "sort", "stable_partition", "stable_sort", "swap", "unique",
+    "iter_swap", "nth_element", "partial_sort", "partition", "random_shuffle", "remove", "remove_if",
+    "reverse", "rotate", "shuffle", "sort", "stable_partition", "stable_sort", "swap", "unique",
 })  # fmt: skip
 
 

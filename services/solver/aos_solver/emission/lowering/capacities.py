@@ -165,7 +165,8 @@ def _aliases(cpp: Cpp) -> Iterator[tuple[str, tuple[str, ...]]]:
 
 
 def _in_place_of_each_other(cpp: Cpp, code: str) -> Iterator[tuple[Mention, Mention]]:
-    """Pairs as in `c ? state.a : state.b`, `{&state.a, &state.b}`, `swap(state.a, state.b)` and `state.a.swap(state.b)`."""
+    """Pairs as in `c ? state.a : state.b`, `{&state.a, &state.b}`, `swap(state.a, state.b)`, and
+    `state.a.swap(state.b)`."""
     for one, other in pairwise(cpp.mentions):
         between = _IN_PLACE.fullmatch(code, one.extent.end, other.extent.start)
         if between is None:
@@ -173,7 +174,8 @@ def _in_place_of_each_other(cpp: Cpp, code: str) -> Iterator[tuple[Mention, Ment
         statement = _STATEMENT.search(code, 0, one.extent.start)
         before = _BEFORE_FIRST.search(code, 0, one.extent.start)
         is_choice = between[1] == ":" and statement is not None and "?" in statement[0]
-        if is_choice or between[1][0] == "." or (between[1] == "," and before is not None and bool(before[2]) == bool(between[2])):
+        is_listed = between[1] == "," and before is not None and bool(before[2]) == bool(between[2])
+        if is_choice or is_listed or between[1][0] == ".":
             yield one, other
 
 

@@ -40,8 +40,8 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
     - `std::function<void(vector<int>&)> grow = [](...) {...}` becomes `auto grow`
     - `mine.swap(state__.row)` becomes `swap(mine, state__.row)`
     - `state__.bits[1].flip()` becomes `aos::flip(state__.bits[1])`
-    - `std::swap`, `std::erase`, `std::erase_if` and `std::getline` lose their `std::`: those of state variables
-      are not there
+    - `std::swap`, `std::erase`, `std::erase_if` and `std::getline` lose their `std::`: those of state
+      variables are not there
     - a vector of constants that is only read becomes `static const`
     - `AOS.SampleDiscrete(vector<double>{0.5, 0.5})` becomes `AOS.SampleDiscrete({0.5, 0.5})`
     """
