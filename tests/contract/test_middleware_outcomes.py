@@ -105,7 +105,7 @@ async def test_a_first_message_that_comes_behind_the_answer_is_awaited(system: S
     await with_sense(system, SENSE.replace("initial_value: 0\n", ""))
     await system.adapter.serve("/sense", publish_behind)
     assert (await system.activate("sense", 1)).response == "heard"
-    why = "; level has no value, for no message came on /level"
+    why = "; level is null; level has no value, for no message came on /level"
     assert_ended(await system.activate("sense", 2), "unknown", "AOS401", why)
 
 

@@ -36,6 +36,7 @@ async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_s
         system.until("service", service="solver", state="ready")
         held = system.until("mission", phase="holding", step=1)
         assert held["left_out"].keys() == {"open(door=left_door)"}
+        assert system.aos("mission", "list")[1].endswith("holds the mission\n")
 
         code, _, error = system.aos("mission", "do", "open(door=left_door)")
         assert code == 3

@@ -159,7 +159,8 @@ def _line(entry: MissionEntry) -> str:
         began.append(f"after {count(entry.idle, 'idle step')}")
     ending = entry.ending or "running"
     steps = count(entry.steps, "step")
-    return f"{ending:18} {steps:>9}  {begun}  {entry.mission}  seed {entry.seed}, {', '.join(began)}"
+    now = "" if entry.ending or not entry.remark else f"; {entry.remark}"
+    return f"{ending:18} {steps:>9}  {begun}  {entry.mission}  seed {entry.seed}, {', '.join(began)}{now}"
 
 
 add_commands(mission_app, steering)

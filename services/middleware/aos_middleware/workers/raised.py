@@ -39,7 +39,7 @@ def raised(
         line, column, failed = _place(error.__traceback__, file_name, lines)
     text = sendable_text(text[:_MAX_ERROR_CHARACTERS])
     named = set(_NAME.findall(failed))
-    if isinstance(error, TypeError) and "NoneType" not in text:
+    if isinstance(error, TypeError):
         values = (local_variables or {}).items()
         text += "".join(f"; {name} is {shortened(value, 60)}" for name, value in values if name in named)
     told = tuple(name for name in unset if name in named) or unset
