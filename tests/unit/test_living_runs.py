@@ -2,6 +2,7 @@ import os
 from pathlib import Path
 
 import pytest
+from commands import aos
 
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.living import RUNS, chosen_run, living_run, living_runs, noted, runs_here
@@ -39,6 +40,18 @@ def test_a_command_says_which_run_of_another_folder_it_is_for(tmp_path, monkeypa
             assert chosen_run(None, None).path == living_run(None, None).path
     run.close()
     assert capsys.readouterr().err == f"aos: the run is {run.path}\n" * 2
+
+
+def test_what_is_checked_is_the_last_run_here_also_while_another_runs(tmp_path, monkeypatch):
+    monkeypatch.setenv("AOS_RUNNING_DIR", str(tmp_path / "running"))
+    run_in(tmp_path / "runs")
+    monkeypatch.chdir(tmp_path)
+    other = RunDirectory.create(tmp_path / "other", "r", 0)
+    other.write_record(RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=os.getpid()))
+    with noted(other):
+        output = aos("check").output
+    other.close()
+    assert "\nruns/19700101T000000Z-r: 1 violation of rows" in output
 
 
 def test_a_run_that_was_killed_and_taken_up_is_one(tmp_path, monkeypatch):

@@ -13,7 +13,7 @@ from aos_deploy.history_check.rules import BY_TIME, RULES
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, OneRun, Runs
 from aos_deploy.printing import count, from_here, print_json
-from aos_deploy.runs.living import chosen_run
+from aos_deploy.runs.living import chosen_run, runs_here
 from aos_deploy.terminal import waiting
 from aos_protocol.errors import DeployError
 
@@ -33,7 +33,7 @@ def check(
     intention, and so on. A replay of the outcomes gives the journalled beliefs again; for that the run's
     model is compiled where it is not in the cache. The exit code is 1 where a row breaks a rule.
     """
-    directory = chosen_run(run, runs)
+    directory = chosen_run(run, runs or runs_here())
     if directory.is_running:
         raise DeployError(f"{from_here(directory.named)} goes on", hint="Check it when it has ended")
     checked = check_run(directory.path)
