@@ -110,6 +110,29 @@ TEST("The best of the simple policies listens to the tiger, and returns less tha
   EXPECT(work > 0);
 }
 
+TEST("Twice as many states take a simple policy twice the work") {
+  double work[] = {0, 0};
+  for (const std::uint32_t states : {2000u, 4000u}) {
+    // A look mostly tells whether the state's number is odd. To tell it, too, ends the mission.
+    Problem problem = units::world(states + 1, 3, 0.9);
+    problem.starts.clear();
+    problem.sensings = {{{0, 0.8}, {1, 0.2}}, {{0, 0.2}, {1, 0.8}}};
+    problem.endings[states] = 1;
+    for (std::uint32_t state = 0; state < states; ++state) {
+      problem.starts.push_back({state, 1.0 / states});
+      units::row(problem, state, 2) = {{1.0, state, state % 2, -1.0}};
+      for (std::uint32_t told : {0u, 1u}) units::row(problem, state, told) = {{1.0, states, 0, told == state % 2 ? 10.0 : -10.0}};
+    }
+    const point_based::FlatModel model = flat_model(problem);
+    point_based::OnlineSarsop search{model};
+    search.move_to(model.starts.front().belief);
+    std::uint64_t all = 0;
+    EXPECT(search.best_policy(1, 0, never, all).has_value());
+    work[states > 2000] = static_cast<double>(all);
+  }
+  EXPECT(0 < work[0] && work[1] < 2.2 * work[0]);
+}
+
 TEST("A simple policy decides with a standard error above the bound, and with less if it decided last") {
   // A look for 4 tells whether to take 10, or to end. To take without it loses 100.
   Problem problem = units::world(3, 3, 0.9);

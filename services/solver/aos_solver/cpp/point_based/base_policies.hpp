@@ -168,15 +168,26 @@ class BasePolicies {
     List<double>& known = doubts_[region * model_.actions + action];
     if (!known.empty()) return known;
     const Move& move = regions_.all[region].moves[action];
+    List<List<std::pair<std::size_t, double>>> observed(move.targets);  // by target: branches, and their probabilities
+    for (std::size_t number = 0; number < move.observation_branches.size(); ++number) {
+      for (const auto& successor : move.observation_branches[number].successors) observed[successor.target].emplace_back(number, successor.probability);
+    }
+    List<double> odds(move.observation_branches.size(), 0.0);
+    List<std::size_t> possible;
     for (std::uint32_t state = 0; state < regions_.all[region].states.size(); ++state) {
-      graph_.count_work(posterior_.predict({{state}, {1.0}}, move));
-      double entropy = 0;
-      for (const ObservationBranch& branch : move.observation_branches) {
-        entropy += share_of_entropy(posterior_.probability_of(branch));
+      possible.clear();
+      for (const Move::Flow& flow : move.flows[state]) {
+        for (const auto& [number, probability] : observed[flow.target]) {
+          odds[number] += flow.probability * probability;
+          possible.push_back(number);
+        }
       }
-      graph_.count_work(move.targets);
+      double entropy = 0;
+      for (const std::size_t number : possible) entropy += share_of_entropy(std::exchange(odds[number], 0.0));
+      graph_.count_work(possible.size());
       known.push_back(entropy);
     }
+    graph_.count_work(move.targets);
     return known;
   }
 
