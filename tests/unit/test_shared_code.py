@@ -252,6 +252,16 @@ def test_a_misspelt_name_is_told_with_one_that_documents_have(said, name, hint):
         ("use of undeclared identifier 'True'", "use of undeclared identifier `True`", "C++ writes `true`"),
         ("'TRUE' was not declared in this scope", "`TRUE` was not declared", "C++ writes `true`"),
         ("expected ';' before 'AND'", "expected `;` before `AND`", "C++ writes `&&`"),
+        (
+            "expected ';' before 'in'\nm.cpp:{line}:9: error: use of 'p' before deduction of 'auto'",
+            "expected `;` before `in`",
+            "C++ writes `:`",
+        ),
+        (
+            "expected '(' before 'slips'\nm.cpp:{line}:9: error: expected '}' before 'else'",
+            "expected `(` before `slips`",
+            "A condition stands in brackets: `if (...)`",
+        ),
         ("expected primary-expression before ')' token", "a value is missing behind `(`", ""),
         (
             "cannot convert 'const char*' to 'model::Side' in assignment",

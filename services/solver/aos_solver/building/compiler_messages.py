@@ -25,7 +25,7 @@ _UNKNOWN = re.compile(
 )
 _OF_PYTHON = {"True": "true", "False": "false", "None": "nullptr", "elif": "else if", "pass": ";"}
 _OF_PYTHON |= {"TRUE": "true", "FALSE": "false", "null": "nullptr"}
-_OF_PYTHON |= {"AND": "&&", "OR": "||", "is": "=="}
+_OF_PYTHON |= {"AND": "&&", "OR": "||", "in": ":", "is": "=="}
 _A_TEXT = re.compile(
     r"`const char ?(?:\*|\[\d+\])`.*`(?!const char)|`(?!const char)\w+`.*`const char ?(?:\*|\[\d+\])`"
 )
@@ -53,6 +53,10 @@ _PRIVATE = re.compile(
     r"`.*?(\w+::\w+)(?:\(.*\))?(?: const)?` is private within.*|`(\w+)` is a private member of .*"
 )
 _NO_SEMICOLON = "Is a semicolon missing at the end of the line above?"
+_NO_BRACKET = "A condition stands in brackets: `if (...)`"
+_CUTTING = (_NO_SEMICOLON, _NO_BRACKET, "C++ writes `:`")
+"""The advice on errors at which g++ loses its place in the statement."""
+_LOST = re.compile(r"expected `}` before|use of `\w+` before deduction")
 _FAULTS = ("error", "fatal error", "Error")
 _ENDLESS = re.compile(r"expected .*`;`.* before .*")
 """g++ tells a missing semicolon where it reads on, and skips what comes before the next one."""
@@ -112,6 +116,8 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
             hint = "" if line[:start].strip() else _NO_SEMICOLON
             word = text.partition(" before `")[2].rstrip("`")
             hint = f"C++ writes `{_OF_PYTHON[word]}`" if word in _OF_PYTHON else hint
+        if text.startswith("expected `(` before"):
+            hint = _NO_BRACKET
         if _NO_VALUE.fullmatch(text) and message.file.endswith(source_name):
             before = lines[message.line - 1][: message.column - 1].decode("utf-8", "replace")
             text = next((f"a value is missing behind `{m[0]}`" for m in _OPERATOR.finditer(before)), text)
@@ -159,14 +165,14 @@ def _without_consequences(diagnostics: list[Diagnostic], emitted: EmittedModel) 
 def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """Each complaint once for a line: a template is complained about for every use of it."""
     first: dict[tuple[str, int, str], Diagnostic] = {}
-    cut = {f.span.file for f in diagnostics if f.hint == _NO_SEMICOLON}
+    cut = {f.span.file for f in diagnostics if f.hint in _CUTTING}
     bound = {(f.span.file, f.span.line) for f in diagnostics if f.message.endswith("this is only read")}
     named = {found.span for found in diagnostics if _NOT_DECLARED.fullmatch(found.message)}
     for diagnostic in diagnostics:
         if "std::ios_base" in diagnostic.message and diagnostic.span in named:
             continue  # Said of the same name.
-        if diagnostic.span.file in cut and diagnostic.message.startswith("expected `}` before"):
-            continue  # g++ has lost its place in the statement.
+        if diagnostic.span.file in cut and _LOST.match(diagnostic.message):
+            continue
         if named and _CONSEQUENCES.search(diagnostic.message):
             continue  # It follows from another.
         line = (diagnostic.span.file, diagnostic.span.line)
