@@ -299,7 +299,7 @@ class Claims {
     }
     model.observations = observations.size();
     model.starts.push_back({1, {start.begin(), start.end()}});
-    constexpr double hardly_any = 0.999999;
+    constexpr double hardly_any = 0.9999;
     const double own = model.discount;
     for (const auto& [decisions, discount] : {std::pair{0, own}, {problem_.horizon, own}, {0, hardly_any}}) {
       if (decisions == 0 && discount >= 1) continue;
@@ -312,6 +312,8 @@ class Claims {
       }
     }
     // An action loses a million times what can be earned, in one state.
+    model.horizon = static_cast<std::size_t>(problem_.horizon);
+    model.discount = own;
     model.rewards[choosing_.bits() % model.rewards.size()] = -1e6 * largest_;
     tables_.push_back(std::make_unique<OnTables>(model));
   }
@@ -322,10 +324,15 @@ class Claims {
       const auto decisions = static_cast<int>(model.horizon);
       who_ = "point-based search on the tables, discount " + number(model.discount);
       if (!search.move_to({exact.begin(), exact.end()})) continue;
-      search.improve(1, [] { return false; });
-      check_to_the_last_digit(*on_tables, exact);
-      search.improve(1000 * options_.simulations, [] { return false; });
-      check_to_the_last_digit(*on_tables, exact);
+      listed::Belief belief{exact.begin(), exact.end()};
+      listed::Real total = 0;
+      for (const auto& entry : belief) total += entry.second;
+      for (auto& entry : belief) entry.second /= total;
+      const aos::List<listed::Interval> truth = beliefs.action_values(belief, 200);
+      for (const std::uint64_t work : {std::uint64_t{1}, 1000 * options_.simulations}) {
+        search.improve(work, [] { return false; });
+        check_to_the_last_digit(search, truth, beliefs.tolerance());
+      }
       if (model.discount != flat_.discount() || on_tables == tables_.back()) continue;
       const auto [lower, upper] = search.bounds();
       check_bounds(lower, upper, exact, 1, decisions, "between " + number(lower) + " and " + number(upper));
@@ -334,23 +341,18 @@ class Claims {
   }
 
   // Bounds in floating point hold in floating point: rounding is part of them.
-  void check_to_the_last_digit(OnTables& on_tables, const Mass& exact) {
-    auto& [model, search, beliefs] = on_tables;
-    listed::Belief belief{exact.begin(), exact.end()};
-    listed::Real total = 0;
-    for (const auto& entry : belief) total += entry.second;
-    for (auto& entry : belief) entry.second /= total;
-    const aos::List<listed::Interval> truth = beliefs.action_values(belief, 600);
+  void check_to_the_last_digit(aos::point_based::OnlineSarsop& search, const aos::List<listed::Interval>& truth,
+                               listed::Real tolerance) {
     const aos::List<aos::point_based::ActionBounds> bounds = search.action_bounds();
     listed::Interval best = truth.front();
     for (std::size_t action = 0; action < bounds.size(); ++action) {
       best.lower = std::max(best.lower, truth[action].lower);
       best.upper = std::max(best.upper, truth[action].upper);
       const std::string claim = "bounds of action " + std::to_string(action);
-      check_enclosed(claim, {bounds[action].lower, bounds[action].upper}, truth[action], beliefs.tolerance());
+      check_enclosed(claim, {bounds[action].lower, bounds[action].upper}, truth[action], tolerance);
     }
     const auto [lower, upper] = search.bounds();
-    check_enclosed("bounds", {lower, upper}, best, beliefs.tolerance());
+    check_enclosed("bounds", {lower, upper}, best, tolerance);
   }
   void check_enclosed(const std::string& claim, Bracket said, const listed::Interval& truth, listed::Real rounding) {
     ++claims_;
