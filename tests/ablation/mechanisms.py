@@ -32,6 +32,7 @@ _OPTIONS = (
     "twins",
     "sequels",
     "past_ends",
+    "moved_by_ways",
 )
 _SAVINGS = ("savings", "saving_lookahead", "saving_rollouts")
 _SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree")

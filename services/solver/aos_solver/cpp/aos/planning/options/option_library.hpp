@@ -137,8 +137,8 @@ class OptionLibrary {
     return !found.empty();
   }
 
-  // Takes options that earn something, the best first, until none is left. Returns how many there were.
-  std::size_t follow(State& state, double& steps, Sampler& random) const {
+  // Takes options that earn something, the best first, until none is left, and notes what they change. Returns how many there were.
+  std::size_t follow(State& state, double& steps, Sampler& random) {
     std::size_t followed = 0;
     for (std::size_t i = 0; i < longest && Model::ending(state) == Ending::running && is_left(steps); ++i) {
       const Option* best = nullptr;
@@ -153,7 +153,9 @@ class OptionLibrary {
       }
       if (best == nullptr) break;
       ++followed;
+      const State before = state;
       taken_option<Model>(*best, state, random, retries());
+      if (switches::moved_by_ways) cells_.add_moved(before, state);
     }
     return followed;
   }

@@ -62,7 +62,7 @@ class OwnChanges {
   // Whether the next step earns something whatever the robot does.
   bool earns_anyway() const { return earns_anyway_; }
   // Whether a variable changes by itself, and no action changes it.
-  bool is_worlds(std::size_t variable) const { return is_worlds_[variable] && !is_changed_[variable]; }
+  bool is_worlds(std::size_t variable) const { return variable < is_worlds_.size() && is_worlds_[variable] && !is_changed_[variable]; }
 
  private:
   void compare(std::size_t variables) {

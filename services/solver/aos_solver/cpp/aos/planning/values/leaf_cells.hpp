@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
@@ -48,6 +49,18 @@ class LeafCells {
     LeafCells all = *this;
     all.leaves_.insert(all.leaves_.end(), resting_.begin(), resting_.end());
     return all;
+  }
+
+  // Takes up what was at rest and differs between two states, with all of its list, behind the others.
+  void add_moved(const State& before, const State& after) {
+    std::set<std::size_t> lists;
+    for (const Place& leaf : resting_) {
+      if (bits(leaf, before) != bits(leaf, after)) lists.insert(leaf.list);
+    }
+    if (lists.empty()) return;
+    const auto moved = std::ranges::stable_partition(resting_, [&](const Place& leaf) { return !lists.contains(leaf.list); });
+    leaves_.insert(leaves_.end(), moved.begin(), moved.end());
+    resting_.erase(moved.begin(), moved.end());
   }
 
   std::size_t size() const { return leaves_.size(); }
