@@ -33,6 +33,7 @@ _OPTIONS = (
     "sequels",
     "past_ends",
     "moved_by_ways",
+    "reported_worlds",
 )
 _SAVINGS = ("savings", "saving_lookahead", "saving_rollouts")
 _SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree")

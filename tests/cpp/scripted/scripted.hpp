@@ -52,6 +52,7 @@ class ScriptedDraws {
   void Initialize(bool& value) { value = true; }
   bool IsInitialized(bool value) { return value; }
   void report(NumberKey, const Distribution&) {}
+  void end_world() {}
 
   int below(int count);
 
@@ -90,11 +91,6 @@ struct ScriptedModel {
 extern const ScriptedModel scripted_model;
 
 template <class Model>
-const typename Model::State& state_at(const void* state) {
-  return *static_cast<const typename Model::State*>(state);
-}
-
-template <class Model>
 constexpr ScriptedModel scripted_model_of() {
   using State = typename Model::State;
   static_assert(std::is_trivially_copyable_v<State> && alignof(State) <= alignof(std::max_align_t));
@@ -103,26 +99,26 @@ constexpr ScriptedModel scripted_model_of() {
       .prepare = Model::prepare,
       .actions = &Model::grounded_actions(),
       .skills = Model::skills(),
-      .initial = [](void* state, ScriptedDraws& draws) { Model::initial(*static_cast<State*>(state), draws); },
+      .initial = [](void* state, ScriptedDraws& draws) { Model::initial(state_at<State>(state), draws); },
       .step = [](void* state, int action,
-                 ScriptedDraws& draws) { return Model::step(*static_cast<State*>(state), action, draws); },
-      .ending = [](const void* state) { return Model::ending(state_at<Model>(state)); },
+                 ScriptedDraws& draws) { return Model::step(state_at<State>(state), action, draws); },
+      .ending = [](const void* state) { return Model::ending(state_at<State>(state)); },
       .meets_precondition = [](const void* state, int action,
-                               ScriptedDraws& draws) { return Model::meets_precondition(state_at<Model>(state), action, draws); },
+                               ScriptedDraws& draws) { return Model::meets_precondition(state_at<State>(state), action, draws); },
       .rollout_weights =
           [](const void* state, ScriptedDraws& draws) {
             aos::List<double> weights;
-            Model::rollout_weights(state_at<Model>(state), draws, [&](double weight) { weights.push_back(weight); });
+            Model::rollout_weights(state_at<State>(state), draws, [&](double weight) { weights.push_back(weight); });
             return weights;
           },
       .state_value = [](const void* state,
-                        ScriptedDraws& draws) -> double { return Model::state_value(state_at<Model>(state), draws); },
-      .visit = [](const void* state, ValueVisitor& visitor) { visit_value(state_at<Model>(state), visitor); },
+                        ScriptedDraws& draws) -> double { return Model::state_value(state_at<State>(state), draws); },
+      .visit = [](const void* state, ValueVisitor& visitor) { visit_value(state_at<State>(state), visitor); },
       .is_saved =
           [](const void* state) {
             State loaded{};
-            Model::load_state(loaded, Model::save_state(state_at<Model>(state)), Model::save_constants());
-            return loaded == state_at<Model>(state) && Model::hash(loaded) == Model::hash(state_at<Model>(state));
+            Model::load_state(loaded, Model::save_state(state_at<State>(state)), Model::save_constants());
+            return loaded == state_at<State>(state) && Model::hash(loaded) == Model::hash(state_at<State>(state));
           },
   };
 }

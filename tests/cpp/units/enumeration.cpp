@@ -1,6 +1,8 @@
 // Draws and the walk over all of them: enumerator.hpp, normal.hpp, random.hpp.
 #include "aos/draws/enumerator.hpp"
 
+#include <set>
+
 #include "aos/draws/normal.hpp"
 #include "aos/model/support.hpp"
 #include "check.hpp"
@@ -27,6 +29,27 @@ Walked walked(Code&& code) {
     result.has_ended = false;
   }
   return result;
+}
+
+TEST("Where luck makes the draws of the world, those of the skill are walked in one world") {
+  std::set<std::pair<int, bool>> seen;
+  const auto code = [&](Enumerator& draws) {
+    int world = 0;
+    for (int i = 0; i < 30; ++i) world = 2 * world + draws.Bernoulli(0.5);
+    draws.end_world();
+    seen.emplace(world, draws.Bernoulli(0.3));
+  };
+  Enumerator draws;
+  double walked = 0;
+  for (std::uint64_t luck = 1; luck <= 3; ++luck) {
+    draws.leave_world_to(luck);
+    draws.for_nearly_each_path(code, [&](Enumerator& path) { walked += path.probability(); });
+  }
+  EXPECT(std::abs(walked - 3) < 1e-12);
+  EXPECT(seen.size() == 6);
+  std::set<int> worlds;
+  for (const auto& [world, is_taken] : seen) worlds.insert(world);
+  EXPECT(worlds.size() == 3);
 }
 
 TEST("The paths of loops that draw sum to 1, whether the way out comes first or last") {

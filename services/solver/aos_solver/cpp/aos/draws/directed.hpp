@@ -37,6 +37,9 @@ class DirectedDraws : public Draws<DirectedDraws> {
   AveragedDraws<DirectedDraws> averaged() { return AveragedDraws<DirectedDraws>{*this}; }
   static bool gives_means() { return true; }
 
+  // Called between the extrinsic changes of a step and its skill.
+  virtual void end_world() {}
+
   // Who is told of the loops in which model code draws; null if nobody is.
   virtual LoopHeads* loop_heads() { return nullptr; }
 

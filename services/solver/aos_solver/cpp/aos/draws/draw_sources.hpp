@@ -39,6 +39,7 @@ inline constexpr AnySource::Functions functions_of{
       static_cast<Source*>(source)->report(key, distribution);
     },
     .loop_heads = [](void* source) -> LoopHeads* { return static_cast<Source*>(source)->loop_heads(); },
+    .end_world = [](void* source) { static_cast<Source*>(source)->end_world(); },
 };
 
 }  // namespace detail
@@ -47,6 +48,7 @@ AnySource::AnySource(Sampler& sampler) : source_(&sampler), functions_(detail::f
 AnySource::AnySource(DirectedDraws& draws) : source_(&draws), functions_(detail::functions_of<DirectedDraws>) {}
 
 int Enumerator::choose(const double* weights, int count, double total) {
+  if (is_world_) return of_world_.choose(weights, count, total);
   if (depth_ >= choices_.size()) {
     if (given_left_ > 0) return choose_given();
     if (depth_ == max_draws_of_path) throw NotEnumerable{"a step draws too often"};
@@ -68,6 +70,7 @@ int Enumerator::choose(const double* weights, int count, double total) {
 }
 
 double Enumerator::uniform() {
+  if (is_world_) return of_world_.uniform();
   has_number_since_ = events_ > 0;
   if (luck_) return drawn_.uniform();
   meets_number_ = has_drawn_number_ = true;
@@ -148,6 +151,8 @@ void Enumerator::run_once(Run run, End at_end) {
   probability_ = 1;
   if (has_loops_) begin_run_with_loops();
   if (luck_) drawn_ = Sampler{*luck_};
+  is_world_ = world_.has_value();
+  if (is_world_) of_world_ = Sampler{*world_};
   has_drawn_number_ = false;
   begin_numbers();
   try {

@@ -51,11 +51,15 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
 
   int choose(const double* weights, int count, double total) override;
   double uniform() override;
-  LoopHeads* loop_heads() override { return this; }
+  LoopHeads* loop_heads() override { return is_world_ ? nullptr : this; }
+  void end_world() override { is_world_ = false; }
 
   // From now on chance makes the continuous draws, the same ones in all runs. What is walked are then the combinations
   // of the discrete draws under this luck.
   void leave_numbers_to(std::uint64_t luck) { luck_ = luck; }
+  // From now on chance makes all draws of the extrinsic changes, the same ones in all runs, or no longer where none is given.
+  // What is walked are then the combinations of the skill's draws in one world.
+  void leave_world_to(std::optional<std::uint64_t> luck) { world_ = luck; }
   // From now on a continuous draw gives the middle of one of these strata. What is walked are then estimates.
   void divide_numbers(DrawStrata strata) { strata_ = strata; }
   // Whether a continuous draw has been asked for so far, and whether one was made in this run.
@@ -137,6 +141,9 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   void take_likeliest();
 
   std::optional<std::uint64_t> luck_;  // of the continuous draws
+  std::optional<std::uint64_t> world_;  // its luck
+  bool is_world_ = false;  // what draws now, and leaves it to luck
+  Sampler of_world_{0};
   DrawStrata strata_;
   bool meets_number_ = false;
   bool has_drawn_number_ = false;

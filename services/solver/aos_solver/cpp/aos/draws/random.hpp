@@ -205,6 +205,7 @@ class Sampler : public Draws<Sampler>, public Xoshiro {
   }
   // Sets the sink of reported numbers and returns the one before.
   NumberSink* report_to(NumberSink* sink) { return std::exchange(sink_, sink); }
+  static void end_world() {}
 
   int choose(const double* weights, int count, double total) { return place_in(weights, count, uniform() * total); }
 
@@ -262,6 +263,7 @@ class AnySource : public Draws<AnySource> {
     bool gives_means;
     void (*report)(void* source, std::uint32_t key, const Distribution& distribution);
     LoopHeads* (*loop_heads)(void* source);
+    void (*end_world)(void* source);
   };
 
   explicit AnySource(Sampler& sampler);
@@ -278,6 +280,7 @@ class AnySource : public Draws<AnySource> {
   AveragedDraws<AnySource> averaged() { return AveragedDraws<AnySource>{*this}; }
   void report(std::uint32_t key, const Distribution& distribution) { functions_.report(source_, key, distribution); }
   LoopHeads* loop_heads() { return functions_.loop_heads(source_); }
+  void end_world() { functions_.end_world(source_); }
 
  private:
   void* source_;

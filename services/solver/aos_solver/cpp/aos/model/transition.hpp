@@ -218,10 +218,12 @@ Step run_phases(State& next, const auto& parameters, auto& random, bool& meets_p
     Environment::extrinsic_changes(state, next, reward, execution_time, chosen, random);
     if constexpr (notes_rewards<decltype(random)>) note_reward(reward);
     check_reward(reward);
+    random.end_world();
     Kept<State, Skill::keeps_state_> state_ = next;
     return run_skill<Environment, Skill>(state, state_, next, meets_precondition, execution_time, reward, parameters,
                                          random);
   } else {
+    random.end_world();
     return run_skill<Environment, Skill>(state, state, next, meets_precondition, execution_time, 0, parameters, random);
   }
 }

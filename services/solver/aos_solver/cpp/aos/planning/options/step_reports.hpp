@@ -104,35 +104,53 @@ class ReportedStep {
   ReportedStep& operator=(const ReportedStep&) = delete;
 
   double take(State& state, int action, StepReports& reports, double& steps, Sampler& random) {
-    reports.clear();
-    double reward = 0;
-    double sum = 0;
-    paths_.leave_numbers_to(random.bits());
     const State start = state;
-    const bool are_few = comes_to_an_end([&] {
-      Step step;
-      const auto run = [&](Enumerator& path) {
-        next_ = start;
-        --steps;
-        step = Model::step(next_, action, path);
-      };
-      paths_.for_nearly_each_path(run, [&](Enumerator& path) {
-        const double probability = path.probability();
-        reports.add(probability, step.observation, kept_.kept());
-        reward += probability * step.reward;
-        sum += probability;
-        if (random.uniform() * sum <= probability) state = next_;
-      }, max_paths);
-    });
-    return are_few && sum > 0 ? reward / sum : drawn(state, action, reports, steps, random);
+    const auto is_walked = [&](int worlds, bool leaves_world, int most_paths) {
+      begin(reports);
+      return comes_to_an_end([&] {
+        for (int i = 0; i < worlds; ++i) {
+          paths_.leave_world_to(leaves_world ? std::optional{random.bits()} : std::nullopt);
+          walk(start, state, action, 1.0 / worlds, most_paths, reports, steps, random);
+        }
+      }) && sum_ > 0;
+    };
+    paths_.leave_numbers_to(random.bits());
+    if (is_walked(1, false, max_paths)) return reward_ / sum_;
+    // What the world does by itself has many outcomes. In each of a few worlds the skill may have few.
+    if (switches::reported_worlds && is_walked(draws, true, max_paths_of_world)) return reward_ / sum_;
+    begin(reports);
+    state = start;
+    return drawn(state, action, reports, steps, random);
   }
 
  private:
   static constexpr int max_paths = 64;
   static constexpr int draws = 8;  // of a step with more
+  static constexpr int max_paths_of_world = 16;
+
+  void begin(StepReports& reports) {
+    reports.clear();
+    reward_ = sum_ = 0;
+  }
+
+  // Walks the paths from the first state; the second becomes one of the next ones.
+  void walk(const State& start, State& state, int action, double weight, int most_paths, StepReports& reports, double& steps, Sampler& random) {
+    Step step;
+    const auto run = [&](Enumerator& path) {
+      next_ = start;
+      --steps;
+      step = Model::step(next_, action, path);
+    };
+    paths_.for_nearly_each_path(run, [&](Enumerator& path) {
+      const double probability = weight * path.probability();
+      reports.add(probability, step.observation, kept_.kept());
+      reward_ += probability * step.reward;
+      sum_ += probability;
+      if (random.uniform() * sum_ <= probability) state = next_;
+    }, most_paths);
+  }
 
   double drawn(State& state, int action, StepReports& reports, double& steps, Sampler& random) {
-    reports.clear();
     steps -= draws;
     const State start = state;
     double reward = 0;
@@ -151,6 +169,8 @@ class ReportedStep {
   Enumerator paths_;
   KeptDistributions kept_;
   State next_{};
+  double reward_ = 0;  // of the paths, by their probabilities
+  double sum_ = 0;     // of these
 };
 
 }
