@@ -76,7 +76,7 @@ def _token() -> str:
 def _started(runs: Path) -> GatewayNote:
     gateway_folder().mkdir(parents=True, exist_ok=True)
     log = gateway_folder() / "gateway.log"
-    command = [sys.executable, *f"-m aos_gateway --port 0 --unused {_UNUSED_S}".split()]
+    command = [sys.executable, "-m", "aos_gateway", "--port", "0", "--unused", str(_UNUSED_S)]
     with log.open("ab") as said:
         process = subprocess.Popen(
             [*command, "--runs", str(runs)],

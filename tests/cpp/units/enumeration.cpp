@@ -31,24 +31,47 @@ Walked walked(Code&& code) {
   return result;
 }
 
+struct Weather {
+  Ending aos_ending = Ending::running;
+  int sky = 0;
+  bool is_seen = false;
+};
+
+// The sky has 30 draws, and to look has one.
+struct Outside : EnvironmentDefaults {
+  struct aos_Chosen {
+    aos_Chosen(auto&&...) {}
+  };
+  static constexpr bool has_extrinsic_changes = true;
+  static void extrinsic_changes(const Weather&, Weather& next, double&, int, const auto&, auto& draws) {
+    for (int i = 0; i < 30; ++i) next.sky = 2 * next.sky + draws.Bernoulli(0.5);
+  }
+};
+struct Look : SkillDefaults {
+  static constexpr std::array<const char*, 0> response_names{};
+  static void next_state(const auto&, const auto&, Weather& next, bool, int, auto&, const auto&, auto& draws) { next.is_seen = draws.Bernoulli(0.3); }
+};
+
 TEST("Where luck makes the draws of the world, those of the skill are walked in one world") {
   std::set<std::pair<int, bool>> seen;
-  const auto code = [&](Enumerator& draws) {
-    int world = 0;
-    for (int i = 0; i < 30; ++i) world = 2 * world + draws.Bernoulli(0.5);
-    draws.end_world();
-    seen.emplace(world, draws.Bernoulli(0.3));
-  };
   Enumerator draws;
   double walked = 0;
   for (std::uint64_t luck = 1; luck <= 3; ++luck) {
+    Weather weather;
     draws.leave_world_to(luck);
-    draws.for_nearly_each_path(code, [&](Enumerator& path) { walked += path.probability(); });
+    const auto code = [&](Enumerator& path) {
+      weather = {};
+      step<Outside, Look>(weather, SkillDefaults::aos_Parameters{}, static_cast<DirectedDraws&>(path));
+    };
+    draws.for_nearly_each_path(code, [&](Enumerator& path) {
+      walked += path.probability();
+      seen.emplace(weather.sky, weather.is_seen);
+    });
   }
   EXPECT(std::abs(walked - 3) < 1e-12);
   EXPECT(seen.size() == 6);
   std::set<int> worlds;
-  for (const auto& [world, is_taken] : seen) worlds.insert(world);
+  for (const auto& [sky, is_seen] : seen) worlds.insert(sky);
   EXPECT(worlds.size() == 3);
 }
 

@@ -152,16 +152,27 @@ def _check_expression(
 
 
 def _check_condition(condition: Snippet, tree: ast.AST, findings: Findings) -> None:
-    """Warns of a part that Python takes for true whatever it is: `a < 0,2`, and the 2 of `a == 1 or 2`."""
-    body = tree.body if isinstance(tree, ast.Expression) else ast.Constant(value=True)
-    for part in body.values if isinstance(body, ast.BoolOp) else [body]:
-        listed = part.elts if isinstance(part, ast.List | ast.Set | ast.Tuple) else []
-        value = part.value if isinstance(part, ast.Constant) and part is not body else None
-        is_value = bool(value) and value is not True
-        if is_value or listed[isinstance(part, ast.Tuple) :]:
-            message = f"`{ast.unparse(part)}` is no condition, and counts as true"
-            hint = "Write each comparison in full" if is_value else "A decimal is written with a point"
-            findings.warning("AOS149", message, place_in(condition, (listed or [part])[0]), hint)
+    """Warns of a part that Python takes for true whatever it is: `a < 0,2`, and the 2 of `a == 1 or 2`.
+
+    A lone comma at the end is told where the code is read.
+    """
+    match tree:
+        case ast.Expression(body=ast.BoolOp(values=parts)):
+            pass
+        case ast.Expression(body=whole):
+            parts = [whole]
+        case _:
+            return
+    for part in parts:
+        match part:
+            case ast.Tuple(elts=[first, _, *_]) | ast.List(elts=[first, *_]) | ast.Set(elts=[first, *_]):
+                place, hint = first, "A decimal is written with a point"
+            case ast.Constant(value=value) if value and value is not True and len(parts) > 1:
+                place, hint = part, "Write each comparison in full"
+            case _:
+                continue
+        message = f"`{ast.unparse(part)}` is no condition, and counts as true"
+        findings.warning("AOS149", message, place_in(condition, place), hint)
 
 
 def _check_variable(

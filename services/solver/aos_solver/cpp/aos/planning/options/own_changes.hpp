@@ -61,7 +61,7 @@ class OwnChanges {
   bool leaves_tests() const { return std::ranges::count(moves_, false) > 0; }
   // Whether the next step earns something whatever the robot does.
   bool earns_anyway() const { return earns_anyway_; }
-  // Whether a variable changes by itself, and no action changes it.
+  // Whether a variable changes by itself, and no action changes it. Of one that was found after `measure` this is not known.
   bool is_worlds(std::size_t variable) const { return variable < is_worlds_.size() && is_worlds_[variable] && !is_changed_[variable]; }
 
  private:

@@ -105,33 +105,29 @@ class ReportedStep {
 
   double take(State& state, int action, StepReports& reports, double& steps, Sampler& random) {
     const State start = state;
-    const auto is_walked = [&](int worlds, bool leaves_world, int most_paths) {
-      begin(reports);
-      return comes_to_an_end([&] {
-        for (int i = 0; i < worlds; ++i) {
-          paths_.leave_world_to(leaves_world ? std::optional{random.bits()} : std::nullopt);
-          walk(start, state, action, 1.0 / worlds, most_paths, reports, steps, random);
-        }
-      }) && sum_ > 0;
+    const auto is_walked = [&](auto&& walk_all) {
+      reports.clear();
+      reward_ = sum_ = 0;
+      return comes_to_an_end(walk_all) && sum_ > 0;
     };
     paths_.leave_numbers_to(random.bits());
-    if (is_walked(1, false, max_paths)) return reward_ / sum_;
-    // What the world does by itself has many outcomes. In each of a few worlds the skill may have few.
-    if (switches::reported_worlds && is_walked(draws, true, max_paths_of_world)) return reward_ / sum_;
-    begin(reports);
-    state = start;
-    return drawn(state, action, reports, steps, random);
+    paths_.leave_world_to({});
+    if (is_walked([&] { walk(start, state, action, 1, max_paths, reports, steps, random); })) return reward_ / sum_;
+    // What the world does by itself may have many outcomes, and the skill few in each of a few worlds.
+    const auto walk_worlds = [&] {
+      for (int i = 0; i < draws; ++i) {
+        paths_.leave_world_to(random.bits());
+        walk(start, state, action, 1.0 / draws, max_paths_of_world, reports, steps, random);
+      }
+    };
+    if (switches::reported_worlds && is_walked(walk_worlds)) return reward_ / sum_;
+    return drawn(start, state, action, reports, steps, random);
   }
 
  private:
   static constexpr int max_paths = 64;
-  static constexpr int draws = 8;  // of a step with more
+  static constexpr int draws = 8;  // of worlds, or of whole steps
   static constexpr int max_paths_of_world = 16;
-
-  void begin(StepReports& reports) {
-    reports.clear();
-    reward_ = sum_ = 0;
-  }
 
   // Walks the paths from the first state; the second becomes one of the next ones.
   void walk(const State& start, State& state, int action, double weight, int most_paths, StepReports& reports, double& steps, Sampler& random) {
@@ -150,9 +146,9 @@ class ReportedStep {
     }, most_paths);
   }
 
-  double drawn(State& state, int action, StepReports& reports, double& steps, Sampler& random) {
+  double drawn(const State& start, State& state, int action, StepReports& reports, double& steps, Sampler& random) {
+    reports.clear();
     steps -= draws;
-    const State start = state;
     double reward = 0;
     for (int i = 0; i < draws; ++i) {
       next_ = start;
