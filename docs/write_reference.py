@@ -14,9 +14,10 @@ from pathlib import Path
 from limits_table import limits_table
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
-from aos_editor.meanings import SECTIONS, Meaning
 from aos_editor.textmate_grammar import textmate_grammar
 from aos_gateway.api.table import OPERATIONS
+from aos_language.reading.sdl_text import Word
+from aos_language.reading.sdl_words import GRAMMARS
 from aos_protocol import access, errors, keys
 
 DOCS = Path(__file__).resolve().parent
@@ -135,23 +136,28 @@ def words_lists() -> str:
     A word of all files stands in the first list, and parts of several sections below the first of them.
     """
     lines: list[str] = []
-    before: dict[str, Meaning] = {}
-    for suffix, sections in SECTIONS.items():
+    before: dict[str, Word] = {}
+    for suffix, sections in GRAMMARS.items():
         lines += [f"### Words of `{suffix}`", ""]
-        for word, (meaning, parts) in sections.items():
-            if before.get(word) == (meaning, parts):
+        for name, word in sections.items():
+            if before.get(name) == word:
                 continue
             same = next(
-                (name for name, (_, known) in before.items() if known and known.items() <= parts.items()), ""
+                (
+                    known
+                    for known, other in before.items()
+                    if other.parts and other.parts.items() <= word.parts.items()
+                ),
+                "",
             )
             own = [
-                f"  - `{part}`: {text}"
-                for part, text in parts.items()
-                if (not same or part not in before[same][1]) and "has no effect" not in text
+                f"  - `{part}`: {inner.meaning}"
+                for part, inner in word.parts.items()
+                if (not same or part not in before[same].parts) and "has no effect" not in inner.meaning
             ]
             parts_of = f" (parts of `{same}`)" if same else ""
-            lines += [f"- `{word}`{parts_of}: {meaning}", *own]
-            before.setdefault(word, (meaning, parts))
+            lines += [f"- `{name}`{parts_of}: {word.meaning}", *own]
+            before.setdefault(name, word)
         lines.append("")
     return "\n".join(lines) + "\n"
 

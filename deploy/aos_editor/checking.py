@@ -6,7 +6,7 @@ from pathlib import Path
 
 from aos_language.findings import Findings
 from aos_language.load import load_files, read_bundle_files, with_excerpts
-from aos_language.reading.sdl_sections import GRAMMARS
+from aos_language.reading.sdl_words import GRAMMARS
 from aos_language.reading.source import open_source
 from aos_protocol.diagnostics import Diagnostic, Severity
 from aos_solver.emission.lowering.lower import lower

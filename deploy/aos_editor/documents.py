@@ -9,10 +9,10 @@ from pathlib import PurePath
 
 import msgspec
 
-from aos_editor.meanings import BUILT_INS, SECTIONS
+from aos_editor.built_ins import BUILT_INS
 from aos_language.findings import Findings
-from aos_language.reading.sdl_sections import GRAMMARS
 from aos_language.reading.sdl_text import Body, Part, Section, parse_sdl
+from aos_language.reading.sdl_words import GRAMMARS
 from aos_language.reading.source import Source
 
 _NAME = re.compile(r"(?:AOS\.|AOSUtils::)?[A-Za-z_]\w*")
@@ -43,14 +43,14 @@ class Entry(msgspec.Struct, frozen=True):
 def meaning_at(name: str, text: str, line: int, column: int) -> tuple[str, str] | None:
     """The word at a place (line from 1, column from 0) with its meaning; None where there is none."""
     suffix, source = PurePath(name).suffix.lower(), Source(name, text)
-    if suffix not in SECTIONS:
+    if suffix not in GRAMMARS:
         return None
     for section in _sections(suffix, source):
-        meaning, parts = SECTIONS[suffix][section.word]
+        word = GRAMMARS[suffix][section.word]
         for part in (section, *section.parts):
             start = part.span.column - 1
             if part.span.line == line and start <= column <= start + len(part.word):
-                return f"{part.word}:", meaning if part is section else parts[part.word]
+                return f"{part.word}:", (word if part is section else word.parts[part.word]).meaning
     for match in _NAME.finditer(source.line(line)):
         if match.start() <= column <= match.end() and match.group() in BUILT_INS:
             return match.group(), BUILT_INS[match.group()]
@@ -61,7 +61,7 @@ def proposals_at(name: str, text: str, line: int, column: int) -> list[Proposal]
     """The words that may stand at a place: at a line's start those of the open section, then the sections;
     within code the built-ins."""
     suffix, source = PurePath(name).suffix.lower(), Source(name, text)
-    if suffix not in SECTIONS:
+    if suffix not in GRAMMARS:
         return []
     before = source.line(line)[:column]
     if match := _BUILT_IN_START.search(before):
@@ -80,24 +80,18 @@ def proposals_at(name: str, text: str, line: int, column: int) -> list[Proposal]
 
 
 def _words(suffix: str, open_section: Section | None, replaced: int) -> Iterator[Proposal]:
-    sections = SECTIONS[suffix]
-    if open_section is not None:
-        grammar = GRAMMARS[suffix][open_section.word].parts
-        for word, meaning in sections[open_section.word][1].items():
-            if not grammar[word].canonical:
-                yield Proposal(f"{word}:", _opening(word, grammar[word].body), meaning, replaced)
-    for word, (meaning, _) in sections.items():
-        yield Proposal(f"{word}:", _opening(word, GRAMMARS[suffix][word].body), meaning, replaced)
-
-
-def _opening(word: str, body: Body) -> str:
-    return f"{word}: " if body is Body.NONE else f"{word}:\n"
+    sections = GRAMMARS[suffix]
+    parts = sections[open_section.word].parts if open_section is not None else {}
+    for name, word in (*parts.items(), *sections.items()):
+        if not word.canonical:
+            opening = f"{name}: " if word.body is Body.NONE else f"{name}:\n"
+            yield Proposal(f"{name}:", opening, word.meaning, replaced)
 
 
 def outline(name: str, text: str) -> tuple[Entry, ...]:
     """The sections of an SDL text in order, each with its parts; nothing for other files."""
     suffix, source = PurePath(name).suffix.lower(), Source(name, text)
-    if suffix not in SECTIONS:
+    if suffix not in GRAMMARS:
         return ()
     sections = _sections(suffix, source)
     ends = [*(section.span.line - 1 for section in sections[1:]), len(source.lines)]

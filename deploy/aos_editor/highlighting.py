@@ -7,12 +7,12 @@ from pathlib import PurePath
 
 import msgspec
 
-from aos_editor.meanings import BUILT_INS
+from aos_editor.built_ins import BUILT_INS
 from aos_editor.symbols import Occurrence, SymbolKind
 from aos_language.cpp.keywords import CPP_KEYWORDS, SPECIAL_NAMES
 from aos_language.findings import Findings
-from aos_language.reading.sdl_sections import GRAMMARS
 from aos_language.reading.sdl_text import Body, Part, parse_sdl
+from aos_language.reading.sdl_words import GRAMMARS
 from aos_language.reading.source import Source, Text
 
 _KINDS = {

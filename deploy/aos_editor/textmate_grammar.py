@@ -7,8 +7,8 @@ else C++.
 import json
 from typing import Any
 
-from aos_language.reading.sdl_sections import GRAMMARS
 from aos_language.reading.sdl_text import Body
+from aos_language.reading.sdl_words import GRAMMARS
 
 _SECTIONS = [item for grammar in GRAMMARS.values() for item in grammar.items()]
 _WORDS = [*_SECTIONS, *(part for _, section in _SECTIONS for part in section.parts.items())]

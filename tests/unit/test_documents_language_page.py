@@ -7,7 +7,7 @@ from scripted_models import scripted
 
 from aos_language.convert import without_origins
 from aos_language.load import load_files
-from aos_language.reading.sdl_sections import GRAMMARS
+from aos_language.reading.sdl_words import GRAMMARS
 
 EXAMPLE = re.compile(r"^```sdl ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FOLDERS = {"json": "kettle-json", "ours": "kettle-sdl"}

@@ -8,20 +8,6 @@ from places import BUNDLES, ROOT
 
 from aos_editor.checking import check_folder
 from aos_editor.documents import meaning_at, outline, proposals_at
-from aos_editor.meanings import SECTIONS
-from aos_language.reading.sdl_sections import GRAMMARS
-
-
-def test_every_word_of_the_grammar_has_a_meaning_and_no_other():
-    grammar = {
-        (kind, word): set(section.parts)
-        for kind, words in GRAMMARS.items()
-        for word, section in words.items()
-    }
-    meant = {
-        (kind, word): {*meaning[1]} for kind, words in SECTIONS.items() for word, meaning in words.items()
-    }
-    assert meant == grammar
 
 
 def test_a_part_is_explained_as_part_of_its_section():

@@ -1,6 +1,7 @@
 from aos_language.findings import Findings
-from aos_language.reading.sdl_sections import GRAMMARS, places_of_words
+from aos_language.reading.sdl_sections import places_of_words
 from aos_language.reading.sdl_text import Section, parse_sdl
+from aos_language.reading.sdl_words import GRAMMARS
 from aos_language.reading.source import Source
 from aos_protocol.diagnostics import Diagnostic
 

@@ -10,7 +10,7 @@ from aos_language.reading.document import Document, DocumentKind
 from aos_language.reading.json_document import read_json
 from aos_language.reading.picture_file import PICTURE, check_picture
 from aos_language.reading.sdl_document import read_sdl
-from aos_language.reading.sdl_sections import GRAMMARS
+from aos_language.reading.sdl_words import GRAMMARS
 from aos_language.reading.source import open_source
 from aos_protocol.diagnostics import Diagnostic, Span
 

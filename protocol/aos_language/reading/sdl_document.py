@@ -7,9 +7,10 @@ from aos_language.reading.document import Document, DocumentKind, check_name
 from aos_language.reading.sdl_environment import read_environment
 from aos_language.reading.sdl_low_level import read_low_level
 from aos_language.reading.sdl_mapping import read_mapping
-from aos_language.reading.sdl_sections import GRAMMARS, Sections, places_of_words
+from aos_language.reading.sdl_sections import Sections, places_of_words
 from aos_language.reading.sdl_skill import read_skill
 from aos_language.reading.sdl_text import Section, parse_sdl
+from aos_language.reading.sdl_words import GRAMMARS
 from aos_language.reading.source import Source, Text
 from aos_language.reading.version import read_version
 

@@ -42,11 +42,13 @@ class Body(Enum):
 
 
 class Word(msgspec.Struct, frozen=True):
-    """A word of the grammar: what its body is, the words that open its parts, its canonical spelling.
+    """A word of the grammar: what it means, what its body is, the words that open its parts, and its
+    canonical spelling.
 
     `is_list` says that its value is a list, which goes on in the next line where a line ends with a comma.
     """
 
+    meaning: str
     body: Body = Body.NONE
     parts: Mapping[str, Word] = {}
     canonical: str = ""

@@ -5,7 +5,7 @@ import re
 
 import msgspec
 
-from aos_language.reading.sdl_sections import GRAMMARS
+from aos_language.reading.sdl_words import GRAMMARS
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.spelling import did_you_mean
 from aos_solver.building.map_messages import told_of_a_map
