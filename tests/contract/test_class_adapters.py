@@ -98,6 +98,17 @@ async def test_a_result_tells_how_many_messages_of_its_call_came_too_fast(
     assert results[1].published == {"/noise": 2 * MAX_UNSENT_MESSAGES}
 
 
+async def test_calls_have_turns_between_the_messages_that_wait(bus: Bus, keys: Keys):
+    outbox = Outbox(bus, keys)
+    for number in range(MAX_UNSENT_MESSAGES):
+        outbox.publish("/noise", {"number": number})
+    turns = 0
+    while outbox.sent != {"/noise": MAX_UNSENT_MESSAGES}:
+        await asyncio.sleep(0)
+        turns += 1
+    assert turns > 2
+
+
 async def test_a_call_that_was_told_as_stuck_is_told_as_stopped_to_nobody(
     bus: Bus, keys: Keys, endpoint: str, tmp_path
 ):

@@ -95,6 +95,9 @@ async def says_too_much(call):
 async def says_it_to_none(call):
     call.publish(None, x=1)
 
+async def says_it_aside(call):
+    call.publish("pose of arm", x=1)
+
 async def nonsense(call):
     return Observed(3)
 
@@ -237,6 +240,7 @@ async def test_what_goes_wrong_in_a_function_fails_that_call_alone(robot: Robot)
         ("too_far", {}, "AOS504", "the field ticks of the result of /too_far cannot be sent"),
         ("says_too_much", {}, "AOS510", "the field made_by of a message on /scan cannot be sent"),
         ("says_it_to_none", {}, "AOS510", "the topic None is no text"),
+        ("says_it_aside", {}, "AOS510", "no topic has such a name: 'pose of arm' is not a path"),
         ("nonsense", {}, "AOS504", "the observation of /nonsense is 3, which is no word"),
         ("grouped", {}, "AOS504", "the arm is lost"),
         ("decorated", {}, "AOS504", "the arm is lost"),

@@ -3,10 +3,11 @@
 import asyncio
 import logging
 import threading
+import time
 from collections import Counter, deque
 from typing import Any
 
-from aos_protocol.errors import SkillError
+from aos_protocol.errors import BusError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import TopicMessage
 from aos_runtime.adapters.sendable import sendable
@@ -14,6 +15,10 @@ from aos_runtime.bus.bus import Bus
 
 MAX_UNSENT_MESSAGES = 10_000
 """The oldest topic messages give way where more than these wait to be sent."""
+
+_TURN_S = 0.02
+"""Sending may hold up calls for so long. A thread that never rests makes each message slow."""
+_TOLD_AGAIN_S = 1.0
 
 _log = logging.getLogger("aos.adapter")
 
@@ -30,6 +35,8 @@ class Outbox:
         self._sending = threading.Lock()
         self._is_sending = False
         self._giving_way: Counter[str] = Counter()
+        self._untold: Counter[str] = Counter()
+        self._told_s = 0.0
         self.lost: Counter[str] = Counter()
         """The number of messages so far on each topic that gave way and were never sent."""
 
@@ -41,10 +48,15 @@ class Outbox:
     def publish(self, topic: str, fields: dict[str, Any]) -> None:
         """Sends a message on a topic. From any thread, in order.
 
-        SkillError AOS510 if the topic is no text, or a field is nothing that the bus can carry.
+        SkillError AOS510 if the topic is no name of one, or a field is nothing that the bus can carry.
         """
         if not isinstance(topic, str):
             raise SkillError(f"the topic {topic!r} is no text", code="AOS510")
+        try:
+            self._keys.topic(topic)
+        except BusError as error:
+            message = f"no topic has such a name: {error.message}"
+            raise SkillError(message, code="AOS510", hint=error.hint) from error
         fields = sendable(fields, f"a message on {topic}")
         with self._sending:
             if len(self._unsent) == MAX_UNSENT_MESSAGES:
@@ -52,17 +64,42 @@ class Outbox:
             self._unsent.append((topic, fields))
             is_first, self._is_sending = not self._is_sending, True
         if is_first:
-            self._loop.call_soon_threadsafe(self.send)
+            self._loop.call_soon_threadsafe(self._send_some)
 
     def send(self) -> None:
-        """Sends what waits, numbered for each topic; what comes meanwhile goes with the next turn."""
+        """Sends all that waits; what comes meanwhile goes with the next turn."""
         with self._sending:
-            waiting, self._is_sending = list(self._unsent), False
-            self._unsent.clear()
+            waiting = len(self._unsent)
+        for _ in range(waiting):
+            self._send_oldest()
+        self._note_lost(tells=True)
+
+    def _send_some(self) -> None:
+        """Sends for the time of a turn."""
+        ends_s = time.monotonic() + _TURN_S
+        while time.monotonic() < ends_s and self._send_oldest():
+            pass
+        self._note_lost(tells=time.monotonic() - self._told_s >= _TOLD_AGAIN_S)
+        with self._sending:
+            self._is_sending = bool(self._unsent)
+        if self._is_sending:
+            self._loop.call_soon(self._send_some)
+
+    def _send_oldest(self) -> bool:
+        with self._sending:
+            if not self._unsent:
+                return False
+            topic, fields = self._unsent.popleft()
+        self._sent[topic] += 1
+        self._bus.tell(self._keys.topic(topic), TopicMessage(self._sent[topic], fields))
+        return True
+
+    def _note_lost(self, tells: bool) -> None:
+        with self._sending:
             lost, self._giving_way = self._giving_way, Counter()
-        for topic, fields in waiting:
-            self._sent[topic] += 1
-            self._bus.tell(self._keys.topic(topic), TopicMessage(self._sent[topic], fields))
-        for topic, number in lost.items():
-            _log.warning("%d messages on %s came too fast to be sent", number, topic)
         self.lost = self.lost + lost
+        self._untold += lost
+        if self._untold and tells:
+            for topic, number in self._untold.items():
+                _log.warning("%d messages on %s came too fast to be sent", number, topic)
+            self._untold, self._told_s = Counter(), time.monotonic()
