@@ -4,6 +4,7 @@ from pathlib import Path
 import pytest
 from commands import aos
 
+from aos_deploy.commands.runs import Entry, print_entries
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.living import RUNS, chosen_run, living_run, living_runs, noted, runs_here
 from aos_deploy.runs.record import RunRecord
@@ -63,3 +64,13 @@ def test_a_run_that_was_killed_and_taken_up_is_one(tmp_path, monkeypatch):
         (tmp_path / "running" / f"{run.path.name}-1").symlink_to(run.path)  # by the aos-up that was killed
         assert [each.path for each in living_runs()] == [run.path]
     run.close()
+
+
+def test_of_a_system_with_many_missions_the_newest_are_listed_and_the_others_counted(capsys):
+    endings = ["goal"] * 187 + ["failure"] * 2 + ["goal"] * 10
+    missions = tuple(Entry(f"missions/{n}", "r", "", each, 3, 1.0, "") for n, each in enumerate(endings, 1))
+    print_entries([Entry("runs/1", "r", "", "waiting", None, None, "", missions)])
+    system, earlier, *newest = capsys.readouterr().out.splitlines()
+    assert system.split() == ["waiting", "r", "runs/1"]
+    assert earlier == "  189 earlier missions: 187 goal, 2 failure. `aos runs --json` lists each"
+    assert [line.split()[-1] for line in newest] == [f"missions/{n}" for n in range(190, 200)]

@@ -72,7 +72,7 @@ async def replayed_run(
 ) -> Replayed:
     """Compares a mission with its replay up to the first difference, or to the decision of step `until`."""
     found = Replayed(str(name))
-    remade = studied.replay(told, decides=True, niceness=0)
+    remade = studied.replay(told, decides=True)
     try:
         async for made in remade.rows(until):
             found.takeovers += isinstance(made.said, ModelAdopted)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
@@ -23,6 +24,8 @@ from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 runs_app = typer.Typer(name="runs", epilog="Example: aos runs --running")
 
 _UNENDED = ("killed", "not_started")
+_SHOWN_MISSIONS = 10
+"""So many of the newest missions of a system have lines of their own."""
 
 
 class Entry(msgspec.Struct, omit_defaults=True):
@@ -98,12 +101,22 @@ def prune(
 
 
 def print_entries(entries: Iterable[Entry]) -> None:
-    """Each on a line, those of its missions below it."""
-    for entry in (each for listed in entries for each in (listed, *listed.missions)):
-        steps = "" if entry.steps is None else count(entry.steps, "step")
-        took = "" if entry.duration_s is None else f"{entry.duration_s:7.1f} s"
-        values = "".join(f"  {name}={value}" for name, value in entry.mission_parameters.items())
-        typer.echo(f"{entry.ending:18} {steps:>9} {took:>9}  {entry.robot}  {entry.directory}{values}")
+    """Each on a line, those of its newest missions below it."""
+    for entry in entries:
+        _print_entry(entry)
+        if earlier := Counter(mission.ending for mission in entry.missions[:-_SHOWN_MISSIONS]):
+            endings = ", ".join(f"{number:,} {ending}" for ending, number in earlier.most_common())
+            missions = count(earlier.total(), "earlier mission")
+            typer.echo(f"  {missions}: {endings}. `aos runs --json` lists each")
+        for mission in entry.missions[-_SHOWN_MISSIONS:]:
+            _print_entry(mission)
+
+
+def _print_entry(entry: Entry) -> None:
+    steps = "" if entry.steps is None else count(entry.steps, "step")
+    took = "" if entry.duration_s is None else f"{entry.duration_s:7.1f} s"
+    values = "".join(f"  {name}={value}" for name, value in entry.mission_parameters.items())
+    typer.echo(f"{entry.ending:18} {steps:>9} {took:>9}  {entry.robot}  {entry.directory}{values}")
 
 
 def _runs_in(folder: Path) -> list[RunDirectory]:

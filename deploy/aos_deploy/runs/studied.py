@@ -19,7 +19,7 @@ from aos_runtime.disk.journal import rows_of
 from aos_runtime.disk.mission_folders import JOURNAL, mission_folder, mission_folders
 from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission, recorded
-from aos_solver.study.replaying import NICENESS, ReplayedMission
+from aos_solver.study.replaying import ReplayedMission
 from aos_solver.study.study import Study
 
 T = TypeVar("T")
@@ -75,10 +75,11 @@ class StudiedRun:
         finally:
             await study.close()
 
-    def replay(
-        self, on_progress: Callable[[str], None], *, decides: bool = False, niceness: int = NICENESS
-    ) -> ReplayedMission:
-        """A replay of the mission, which has begun; StudyError AOS530 if it has not."""
+    def replay(self, on_progress: Callable[[str], None], *, decides: bool = False) -> ReplayedMission:
+        """A replay of the mission, which has begun; StudyError AOS530 if it has not.
+
+        Somebody waits for it: on a full machine the lowest priority would make minutes of a second.
+        """
         if self.mission.begun is None:
             raise StudyError(f"the mission of {self.run.name} has not begun", hint="Wait until it has")
         policy = RunDirectory(self.run).policy
@@ -89,7 +90,7 @@ class StudiedRun:
             on_progress=on_progress,
             decides=decides,
             policy=policy if policy.exists() else None,
-            niceness=niceness,
+            niceness=0,
         )
 
 
@@ -102,7 +103,7 @@ class _Read:
         return self._studied.mission
 
     def replay(self, mission: RecordedMission) -> ReplayedMission:
-        return self._studied.replay(lambda text: None, niceness=0)
+        return self._studied.replay(lambda text: None)
 
     async def files(self, revision: int) -> dict[str, bytes]:
         return await self._studied.documents.files(revision)
