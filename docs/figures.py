@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from aos_lab.bench.rows import this_machine
+from aos_lab.experiments.results import commit_of
 
 DOCS = Path(__file__).resolve().parent
 
@@ -49,7 +50,7 @@ def measured(rows: tuple[Row, ...]) -> str:
     machine = this_machine("", 0, 0.0)
     where = f"{machine.processor}, {machine.cores} cores, load {machine.load:.1f}"
     lines = [
-        f"{machine.date}, commit {_commit()}, {where}.",
+        f"{machine.date}, commit {commit_of(DOCS)}, {where}.",
         "",
         "| What | Command | Result | Target |",
         "| --- | --- | --- | --- |",
@@ -67,7 +68,7 @@ def speed() -> str:
     What two threads do says something only while two cores are idle, so it is left out.
     """
     lines = [line for line in _printed(SPEED).strip().splitlines() if "two threads" not in line]
-    return "\n".join([f"`{' '.join(SPEED)}`, commit {_commit()}.", *lines])
+    return "\n".join([f"`{' '.join(SPEED)}`, commit {commit_of(DOCS)}.", *lines])
 
 
 FIGURES = {"checking": partial(measured, CHECKING), "speed": speed, "histories": partial(measured, HISTORIES)}
@@ -81,12 +82,6 @@ def _printed(command: tuple[str, ...]) -> str:
         [program, *command[1:]], cwd=DOCS.parent, stdout=subprocess.PIPE, text=True, check=True
     )
     return done.stdout
-
-
-def _commit() -> str:
-    """The checkout's commit, with a + where files differ from it."""
-    asked = ["git", "describe", "--always", "--abbrev=12", "--exclude=*", "--dirty=+"]
-    return subprocess.run(asked, cwd=DOCS, capture_output=True, text=True, check=True).stdout.strip()
 
 
 def main() -> int:

@@ -18,8 +18,8 @@ from aos_language.check.models.blocks import (
     read_block,
     skill_blocks,
 )
-from aos_language.check.scope import STATE_COPIES, Scope
-from aos_language.cpp.keywords import CPP_KEYWORDS, OUR_NAMES, SPECIAL_NAMES
+from aos_language.check.scope import Scope
+from aos_language.cpp.keywords import CPP_KEYWORDS, OUR_NAMES, SPECIAL_NAMES, STATES
 from aos_language.cpp.snippets import Access, Extent, FaultKind, Mention
 from aos_language.cpp.tokens import line_and_column
 from aos_language.document_code import shared_code_of
@@ -216,9 +216,9 @@ class _BlockNames:
         if root in scope.shared.all_names and (self._block.is_declarations or root not in self._own):
             yield self._at(Symbol(SymbolKind.SHARED, root), mention.root)
             return
-        if root in self._own or (mention.access is Access.CALL and root not in STATE_COPIES):
+        if root in self._own or (mention.access is Access.CALL and root not in STATES):
             return
-        if root in STATE_COPIES:
+        if root in STATES:
             yield from self._of_state(mention)
         elif root in self._block.constants:
             yield self._at(Symbol(SymbolKind.PARAMETER, root, self._skill), mention.root)

@@ -13,7 +13,7 @@ from typing import IO, Self
 
 import msgspec
 
-from aos_language.reading.files import MAX_BUNDLE_BYTES, MAX_BUNDLE_FILES, is_document_name
+from aos_language.reading.files import MAX_BUNDLE_BYTES, MAX_BUNDLE_FILES, is_document_name, left_out
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 
 ARCHIVE_SUFFIXES = (".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz", ".zip")
@@ -61,11 +61,11 @@ class _Entry(msgspec.Struct, frozen=True):
 
 
 class _RefusedError(Exception):
-    """The archive cannot be taken; the diagnostic says why."""
+    """The archive cannot be taken."""
 
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
+    def __init__(self, why: str, hint: str = "") -> None:
+        super().__init__(why)
+        self.hint = hint
 
 
 def is_archive_name(name: str) -> bool:
@@ -84,32 +84,30 @@ def read_archive(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
     unpacked = 0
     try:
         if path.stat().st_size > MAX_BUNDLE_BYTES:
-            raise _RefusedError(_error(f"the archive has more than {MAX_BUNDLE_BYTES} bytes", path.name))
+            raise _RefusedError(f"the archive has more than {MAX_BUNDLE_BYTES} bytes")
         entries = _in_zip(path) if path.suffix.lower() == ".zip" else _in_tar(path)
         for number, (entry, content) in enumerate(entries, 1):
-            _check(entry, number, path)
+            _check(entry, number)
             unpacked += entry.size_bytes
             if unpacked > MAX_UNPACKED_BYTES:
                 message = f"the archive unpacks to more than {MAX_UNPACKED_BYTES} bytes at {entry.name!r}"
-                raise _RefusedError(_error(message, path.name))
+                raise _RefusedError(message)
             name = PurePosixPath(entry.name)
             if entry.kind == "folder" or any(part.startswith(".") for part in name.parts):
                 continue
             if not is_document_name(name.name):
-                hint = "It is left out; documents end in .ef, .sd, .am, .lf or .json"
-                message, span = "this is not an AOS document", Span(entry.name)
-                remarks.append(Diagnostic(Severity.REMARK, "AOS107", message, span, hint))
+                remarks.append(left_out(entry.name))
                 continue
             data = content.read(MAX_BUNDLE_BYTES + 1)
             if sum(map(len, files.values())) + len(data) > MAX_BUNDLE_BYTES:
-                raise _RefusedError(_error(f"more than {MAX_BUNDLE_BYTES} bytes of documents", path.name))
+                raise _RefusedError(f"more than {MAX_BUNDLE_BYTES} bytes of documents")
             if name in files:
-                raise _RefusedError(_error(f"the entry {entry.name!r} is there twice", path.name))
+                raise _RefusedError(f"the entry {entry.name!r} is there twice")
             files[name] = data
         _check_ratio(unpacked, path)
-        return _in_one_folder(files, path), remarks
+        return _in_one_folder(files), remarks
     except _RefusedError as refused:
-        return {}, [refused.diagnostic]
+        return {}, [Diagnostic(Severity.ERROR, "AOS120", str(refused), Span(path.name), refused.hint)]
     except UNREADABLE_ARCHIVE as error:
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
         message = f"the archive cannot be read: {reason}"
@@ -177,42 +175,38 @@ def _in_zip(path: Path) -> Iterator[tuple[_Entry, IO[bytes]]]:
                 yield entry, BytesIO()
 
 
-def _check(entry: _Entry, number: int, path: Path) -> None:
+def _check(entry: _Entry, number: int) -> None:
     name = PurePosixPath(entry.name)
     if name.is_absolute() or ".." in name.parts or "\\" in entry.name or "\0" in entry.name:
-        raise _RefusedError(_error(f"the entry {entry.name!r} leads out of the archive", path.name))
+        raise _RefusedError(f"the entry {entry.name!r} leads out of the archive")
     if not 0 < len(entry.name) <= _MAX_NAME or not entry.name.isprintable():
         message = f"the entry {entry.name[:_MAX_NAME]!r} has a name that no document has"
-        raise _RefusedError(_error(message, path.name))
+        raise _RefusedError(message)
     if entry.kind not in ("file", "folder"):
         message = f"the entry {entry.name!r} is a {entry.kind}"
-        raise _RefusedError(_error(message, path.name, "Pack plain files"))
+        raise _RefusedError(message, "Pack plain files")
     if number > MAX_BUNDLE_FILES:
-        raise _RefusedError(_error(f"more than {MAX_BUNDLE_FILES} entries", path.name))
+        raise _RefusedError(f"more than {MAX_BUNDLE_FILES} entries")
     if not 0 <= entry.size_bytes <= MAX_BUNDLE_BYTES:
-        raise _RefusedError(_error(f"the entry {entry.name!r} has {entry.size_bytes} bytes", path.name))
+        raise _RefusedError(f"the entry {entry.name!r} has {entry.size_bytes} bytes")
 
 
 def _check_ratio(unpacked: int, path: Path) -> None:
     packed = path.stat().st_size
     if unpacked > max(_RATIO_COUNTS_FROM_BYTES, MAX_RATIO * packed):
         message = f"{packed} bytes that unpack to {unpacked} hold no documents"
-        raise _RefusedError(_error(message, path.name, f"The limit is {MAX_RATIO} times"))
+        raise _RefusedError(message, f"The limit is {MAX_RATIO} times")
 
 
-def _in_one_folder(files: dict[PurePosixPath, bytes], path: Path) -> dict[str, bytes]:
+def _in_one_folder(files: dict[PurePosixPath, bytes]) -> dict[str, bytes]:
     folders = sorted({str(name.parent) for name in files})
     if len(folders) > 1:
         message = f"documents in several folders: {', '.join(folders)}"
-        raise _RefusedError(_error(message, path.name, "Pack one bundle, its files side by side"))
+        raise _RefusedError(message, "Pack one bundle, its files side by side")
     by_folded: dict[str, str] = {}
     for name in files:
         other = by_folded.setdefault(name.name.casefold(), name.name)
         if other != name.name:
             message = f"the entries {other!r} and {name.name!r} differ in capitals only"
-            raise _RefusedError(_error(message, path.name))
+            raise _RefusedError(message)
     return {name.name: data for name, data in files.items()}
-
-
-def _error(message: str, archive: str, hint: str = "") -> Diagnostic:
-    return Diagnostic(Severity.ERROR, "AOS120", message, Span(archive), hint)

@@ -21,6 +21,7 @@ from aos_language.reading.files import (
     MAX_BUNDLE_FILES,
     KnownFiles,
     is_document_name,
+    left_out,
     read_documents,
 )
 from aos_language.reading.picture_file import PICTURE
@@ -173,11 +174,11 @@ def read_bundle_files(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
             remarks.append(Diagnostic(Severity.ERROR, "AOS120", message, Span(entry.name), hint))
             continue
         if entry.is_dir():
-            remarks.append(_remark("a folder inside a bundle", entry, "It is left out"))
+            message, span = "a folder inside a bundle", Span(entry.name)
+            remarks.append(Diagnostic(Severity.REMARK, "AOS107", message, span, "It is left out"))
             continue
         if not is_document_name(entry.name) or not entry.is_file():
-            hint = "It is left out; documents end in .ef, .sd, .am, .lf or .json"
-            remarks.append(_remark("this is not an AOS document", entry, hint))
+            remarks.append(left_out(entry.name))
             continue
         try:
             total += entry.stat().st_size
@@ -190,7 +191,3 @@ def read_bundle_files(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
             reason = error.strerror or "cannot be read"
             remarks.append(Diagnostic(Severity.ERROR, "AOS101", reason, Span(entry.name)))
     return files, remarks
-
-
-def _remark(message: str, entry: Path, hint: str) -> Diagnostic:
-    return Diagnostic(Severity.REMARK, "AOS107", message, Span(entry.name), hint)

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 import msgspec
 
+from aos_language.cpp.keywords import DRAW_SOURCES
 from aos_language.cpp.snippets import Access, Call, Cpp, Extent, Mention, strip_comments
 from aos_language.document_code import snippets_of
 from aos_protocol.documents import SkillModel, Snippet
@@ -103,7 +104,7 @@ def _report_or_misuse(mention: Mention, cpp: Cpp, code: str) -> Report | Misuse:
 
 def is_draw(call: Call) -> bool:
     """Returns whether it is a call such as `AOS.Bernoulli(p)`."""
-    return len(call.name) == 2 and call.name[0] in ("AOS", "AOSUtils") and call.name[1] in _DRAWS
+    return len(call.name) == 2 and call.name[0] in DRAW_SOURCES and call.name[1] in _DRAWS
 
 
 def _to_write(name: str) -> str:

@@ -42,10 +42,12 @@ from urllib.parse import quote, unquote
 
 from aos_protocol.errors import BusError
 
-_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
+NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
+"""The names that the bus knows robots, services, adapters and skills by."""
+PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
+"""The paths of activations."""
 _VERSION = re.compile(r"[A-Za-z0-9._+-]{1,64}")
 _INSTANCE = re.compile(r"(.+)-([0-9]+)-[0-9a-f]{1,8}")
-_PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 
 
 class Serving(NamedTuple):
@@ -126,14 +128,14 @@ class Keys:
     study_tree = FixedKey("study/tree")
 
     def __init__(self, robot: str) -> None:
-        self.robot = _checked(_NAME, robot, "robot name")
+        self.robot = _checked(NAME, robot, "robot name")
         self.root = f"aos/{self.robot}"
 
     def live(self, service: str) -> str:
-        return f"{self.root}/live/{_checked(_NAME, service, 'service name')}"
+        return f"{self.root}/live/{_checked(NAME, service, 'service name')}"
 
     def activate(self, skill: str) -> str:
-        return f"{self.root}/activate/{_checked(_NAME, skill, 'skill name')}"
+        return f"{self.root}/activate/{_checked(NAME, skill, 'skill name')}"
 
     def call(self, path: str) -> str:
         return f"{self.root}/call/{_path(path)}"
@@ -145,9 +147,9 @@ class Keys:
         return f"{self.root}/progress/{_path(path)}"
 
     def serve(self, serving: Serving) -> str:
-        adapter = _checked(_NAME, serving.adapter, "adapter name")
+        adapter = _checked(NAME, serving.adapter, "adapter name")
         version = _checked(_VERSION, serving.version, "version")
-        instance = _checked(_NAME, serving.instance, "instance name")
+        instance = _checked(NAME, serving.instance, "instance name")
         return f"{self.root}/serve/{adapter}/{version}/{instance}/{_path(serving.path)}"
 
     def serving_of(self, serve_key: str) -> Serving | None:
@@ -156,7 +158,7 @@ class Keys:
         return Serving(parts[0], parts[1], parts[2], "/" + parts[3]) if parts else None
 
     def lack(self, lack: Lack) -> str:
-        adapter = _checked(_NAME, lack.adapter, "adapter name")
+        adapter = _checked(NAME, lack.adapter, "adapter name")
         reason = quote(lack.reason[:999], safe="") or "-"  # Zenoh panics at keys of 64 kB.
         return f"{self.root}/lack/{adapter}/{reason}/{_path(lack.path)}"
 
@@ -166,7 +168,7 @@ class Keys:
         return Lack(parts[0], unquote(parts[1]), "/" + parts[2]) if parts else None
 
     def returning(self, program: str) -> str:
-        return f"{self.root}/returning/{_checked(_NAME, program, 'adapter name')}"
+        return f"{self.root}/returning/{_checked(NAME, program, 'adapter name')}"
 
     def returning_of(self, key: str) -> str | None:
         """Returns the adapter that a token says to be expected back; None for a key of another kind."""
@@ -187,7 +189,7 @@ class Keys:
 
 
 def _path(path: str) -> str:
-    return _checked(_PATH, path, "path").strip("/")
+    return _checked(PATH, path, "path").strip("/")
 
 
 def _checked(pattern: re.Pattern[str], text: str, what: str) -> str:

@@ -1,4 +1,4 @@
-"""AOS as a package: the name that pip knows it by, which is not the name of its commands, and its extras."""
+"""Packages: AOS as pip knows it, by another name than its commands have, its extras, and which are there."""
 
 from typing import Literal
 
@@ -10,3 +10,13 @@ Extra = Literal["", "sim", "compiler", "gym", "bench", "ros", "dds", "ray", "rep
 def pip_install(extra: Extra = "") -> str:
     """The command that installs AOS with an extra, as a person types it."""
     return f"pip install '{DISTRIBUTION}[{extra}]'" if extra else f"pip install {DISTRIBUTION}"
+
+
+def version_of(package: str) -> str:
+    """The version of a package; empty where it is not installed."""
+    from importlib.metadata import PackageNotFoundError, version  # Commands that ask nothing start sooner.
+
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return ""

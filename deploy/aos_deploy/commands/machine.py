@@ -1,6 +1,5 @@
 """`aos doctor`: what this machine has, and what it lacks."""
 
-import importlib.metadata
 import os
 import platform
 import shutil
@@ -20,7 +19,7 @@ from aos_deploy.options import AsJson
 from aos_deploy.places import cache_dir
 from aos_deploy.printing import print_json
 from aos_protocol.errors import AosError
-from aos_runtime.distribution import pip_install
+from aos_runtime.distribution import pip_install, version_of
 from aos_runtime.processes.sandbox_trial import what_a_confined_program_can
 from aos_runtime.sandbox.support import sandbox_support
 
@@ -106,26 +105,19 @@ def _python() -> Finding:
 
 
 def _package(name: str) -> Finding:
-    found = _version_of(name)
-    if found is None:
+    found = version_of(name)
+    if not found:
         return Finding(name, "missing", "not installed", f"Run {pip_install()}")
     return Finding(name, "ok", found)
 
 
 def _simulator() -> Finding:
     """Real robots and robots simulated by their own documents need none."""
-    found = _version_of(_SIMULATOR)
-    if found is None:
+    found = version_of(_SIMULATOR)
+    if not found:
         advice = f"Only simulated rooms need it: {pip_install('sim')}"
         return Finding(_SIMULATOR, "absent", "not installed", advice)
     return Finding(_SIMULATOR, "ok", found)
-
-
-def _version_of(package: str) -> str | None:
-    try:
-        return importlib.metadata.version(package)
-    except importlib.metadata.PackageNotFoundError:
-        return None
 
 
 def _compiler() -> Finding:
@@ -135,8 +127,8 @@ def _compiler() -> Finding:
         line = _first_line([path, "--version"]) if path else ""
         if path and line:
             return Finding("C++ compiler", "ok", f"{line} at {path}")
-    ziglang = _version_of("ziglang")
-    if ziglang is not None:
+    ziglang = version_of("ziglang")
+    if ziglang:
         return Finding("C++ compiler", "ok", f"ziglang {ziglang}, from the Python package")
     advice = f"Install g++ (apt-get install g++), or one from the package index: {pip_install('compiler')}"
     return Finding("C++ compiler", "missing", "none of $CXX, g++, clang++, ziglang", advice)

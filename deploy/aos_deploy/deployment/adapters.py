@@ -1,6 +1,5 @@
 """The deploy file's `adapters:` and `bind:`: which adapters there are, and what each of them serves."""
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -22,13 +21,12 @@ from aos_deploy.deployment.yaml_source import YamlMap, YamlNode, YamlScalar
 from aos_language.findings import Findings
 from aos_protocol.access import ADAPTER, OPERATOR, WATCHER, Party
 from aos_protocol.diagnostics import Span
+from aos_protocol.keys import NAME, PATH
 from aos_runtime.adapters import Binding
 from aos_runtime.adapters.expressions import check_expression
 
 EVERYTHING_ELSE = "*"
 
-_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
-_PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 SPANS = "spans"
 """The process that sends spans to a collector."""
 
@@ -131,7 +129,7 @@ def _named(node: YamlNode | None, findings: Findings) -> dict[str, AdapterPlan]:
     for name, item in node.entries.items() if isinstance(node, YamlMap) else ():
         assert isinstance(node, YamlMap)
         where = node.keys[name]
-        if not _NAME.fullmatch(name) or name in TAKEN:
+        if not NAME.fullmatch(name) or name in TAKEN:
             findings.error(
                 "AOS126", f"{name!r} is no name for an adapter", where, "Use letters, digits, - and _"
             )
@@ -186,7 +184,7 @@ def _bound(
     path: str, node: YamlNode, named: dict[str, AdapterPlan], where: Span, findings: Findings
 ) -> tuple[str, Binding] | None:
     """The adapter's name and how the path is bound to it."""
-    if path != EVERYTHING_ELSE and not _PATH.fullmatch(path):
+    if path != EVERYTHING_ELSE and not PATH.fullmatch(path):
         findings.error(
             "AOS106", f"{path!r} is not an activation path", where, 'Write it as /pick, or "*" for all others'
         )

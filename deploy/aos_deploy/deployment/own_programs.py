@@ -11,12 +11,11 @@ from aos_deploy.deployment.typed import plain_value
 from aos_deploy.deployment.yaml_source import YamlMap
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
+from aos_protocol.keys import NAME
 
 Seconds = Annotated[float, msgspec.Meta(gt=0, le=1e9)]
 Port = Annotated[int, msgspec.Meta(ge=1, le=65535)]
 Status = Annotated[int, msgspec.Meta(ge=0, le=255)]
-
-_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 
 
 class ReadyPart(msgspec.Struct, frozen=True, kw_only=True):
@@ -79,7 +78,7 @@ def check_programs(
     places = given.keys if isinstance(given, YamlMap) else {}
     for name, part in programs.items():
         where = places[name]
-        if not _NAME.fullmatch(name) or name in other_names:
+        if not NAME.fullmatch(name) or name in other_names:
             hint = "Use letters, digits, - and _, and no name of an adapter or a service"
             findings.error("AOS126", f"{name!r} is no name for a program", where, hint)
         if not part.command:

@@ -27,9 +27,9 @@ from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Constraint, MissionValue
 from aos_protocol.errors import DeployError
+from aos_protocol.keys import NAME
 from aos_protocol.spelling import did_you_mean_path
 
-_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _ENDPOINT = re.compile(r"tcp/(127\.\d+\.\d+\.\d+|localhost|\[::1\]):(\d{1,5})")
 _LAST_PORT = 65535
 
@@ -108,7 +108,7 @@ def check_endpoint(endpoint: str) -> None:
 def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) -> Deployment:
     """The paths made absolute, and what the schema alone cannot see checked."""
     folder = path.parent
-    if not _NAME.fullmatch(file.robot):
+    if not NAME.fullmatch(file.robot):
         hint = "Use letters, digits, - and _"
         findings.error("AOS106", f"{file.robot!r} is not a robot name", _place(node, "robot"), hint)
     try:

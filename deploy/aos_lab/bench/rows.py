@@ -1,7 +1,6 @@
 """The report of a benchmark: rows of figures, what was left out and why, and on what machine it was."""
 
 import datetime
-import importlib.metadata
 import os
 import platform
 import statistics
@@ -11,6 +10,7 @@ from pathlib import Path
 import msgspec
 
 from aos_protocol import __version__
+from aos_runtime.distribution import version_of
 
 OURS = "aos"
 
@@ -90,7 +90,7 @@ def with_ratios(rows: Iterable[Row]) -> tuple[Row, ...]:
 
 def this_machine(compiler: str, seed: int, budget_s: float) -> Machine:
     """The machine as it is now, and the settings of a run."""
-    peers = {name: _version(name) for name in ("pomdp-py",) if _version(name)}
+    peers = {name: version_of(name) for name in ("pomdp-py",) if version_of(name)}
     return Machine(
         processor=_processor(),
         cores=len(os.sched_getaffinity(0)),
@@ -102,13 +102,6 @@ def this_machine(compiler: str, seed: int, budget_s: float) -> Machine:
         seed=seed,
         budget_s=budget_s,
     )
-
-
-def _version(package: str) -> str:
-    try:
-        return importlib.metadata.version(package)
-    except importlib.metadata.PackageNotFoundError:
-        return ""
 
 
 def _processor() -> str:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import msgspec
 
+from aos_language.cpp.keywords import DRAW_SOURCES
 from aos_language.cpp.snippets import Call, Cpp, DeclarationKind, Extent, read_cpp, strip_comments
 from aos_language.cpp.tree import tree_of
 from aos_language.observed import reports_in
@@ -187,7 +188,7 @@ def _calls(cpp: Cpp) -> Iterator[Call]:
     """The draws whose outcomes can be counted; what is reported as a number is observed anyhow."""
     reported = [report.draw for report in reports_in(cpp)]
     for call in cpp.calls:
-        is_draw = len(call.name) == 2 and call.name[0] in ("AOS", "AOSUtils") and call.name[1] in _KINDS
+        is_draw = len(call.name) == 2 and call.name[0] in DRAW_SOURCES and call.name[1] in _KINDS
         if is_draw and call.arguments and call not in reported:
             yield call
 

@@ -10,8 +10,7 @@ import msgspec
 from aos_deploy.export.run_bundle import SUFFIX, opened_bundle
 from aos_deploy.printing import from_here
 from aos_deploy.runs.end import beginning_of
-from aos_lab.trials.trial import Trial, truth_lines
-from aos_protocol.codec import UNREADABLE
+from aos_lab.trials.trial import kept_trials, truth_lines
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import DecisionRecord
 from aos_protocol.mission_rows import DECISION
@@ -39,11 +38,6 @@ class RecordedMission(msgspec.Struct, frozen=True):
     ends_early: str = ""
     seed: int = 0
     mission_parameters: dict[str, str] = {}
-
-
-class _Kept(msgspec.Struct, frozen=True):
-    digest: str
-    trial: Trial
 
 
 def read_missions(path: Path) -> tuple[RecordedMission, ...]:
@@ -83,14 +77,7 @@ def _missions(path: Path, named: Path) -> Iterator[RecordedMission]:
 
 def _of_file(path: Path) -> Iterator[RecordedMission]:
     """The newest record of each seed."""
-    trials: dict[int, Trial] = {}
-    for line in path.read_bytes().splitlines():
-        try:
-            trial = msgspec.json.decode(line, type=_Kept).trial
-        except UNREADABLE:
-            continue
-        if not trial.fault:
-            trials[trial.seed] = trial
+    trials = {kept.trial.seed: kept.trial for kept in kept_trials(path)}
     for seed, trial in sorted(trials.items()):
         recorded: list[tuple[str, str, dict[str, Any]]] = [
             (action, response, {}) for action, response in zip(trial.actions, trial.responses, strict=True)

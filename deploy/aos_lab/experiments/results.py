@@ -7,7 +7,6 @@ import subprocess
 from collections import Counter
 from collections.abc import Sequence
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import msgspec
@@ -20,6 +19,7 @@ from aos_lab.trials.files import Experiment, Part
 from aos_lab.trials.intervals import Interval, interval_of_mean, interval_of_share
 from aos_lab.trials.trial import Trial
 from aos_protocol import __version__
+from aos_runtime.distribution import version_of
 
 _PACKAGES = ("eclipse-zenoh", "pybullet", "numpy")
 
@@ -136,21 +136,22 @@ def _holds(truth: str, trial: Trial) -> bool:
 
 def surroundings() -> Surroundings:
     """This machine, today."""
+    installed = {package: version for package in _PACKAGES if (version := version_of(package))}
     return Surroundings(
         date=datetime.now(UTC).date().isoformat(),
         machine=f"{os.cpu_count()} cores, {platform.system()} {platform.machine()}",
-        versions={"aos": __version__, "python": platform.python_version(), **_installed()},
-        commit=_commit(),
+        versions={"aos": __version__, "python": platform.python_version(), **installed},
+        commit=commit_of(Path(__file__).parent),
     )
 
 
-def _commit() -> str:
-    """Returns the commit of the checkout that this runs from, with a + where files differ from it; empty
-    without a checkout."""
+def commit_of(folder: Path) -> str:
+    """The commit of the checkout that a folder is in, with a + where files differ from it; empty without a
+    checkout."""
     try:
         asked = subprocess.run(
             ["git", "describe", "--always", "--abbrev=12", "--exclude=*", "--dirty=+"],
-            cwd=Path(__file__).parent,
+            cwd=folder,
             capture_output=True,
             text=True,
             timeout=10,
@@ -159,13 +160,3 @@ def _commit() -> str:
     except (OSError, subprocess.SubprocessError):
         return ""
     return asked.stdout.strip() if asked.returncode == 0 else ""
-
-
-def _installed() -> dict[str, str]:
-    found = {}
-    for package in _PACKAGES:
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            continue
-    return found

@@ -15,9 +15,8 @@ from aos_lab.trials.ray_cluster import RayPlayer
 from aos_lab.trials.script_player import ScriptPlayer
 from aos_lab.trials.setting import Setting, deployment_of, world_deployment_of
 from aos_lab.trials.system_player import SystemPlayer
-from aos_lab.trials.trial import Trial
+from aos_lab.trials.trial import KeptTrial, Trial, kept_trials
 from aos_protocol import __version__
-from aos_protocol.codec import UNREADABLE
 from aos_protocol.documents import MissionValue
 from aos_runtime.processes.lifecycle import root_cause
 
@@ -50,13 +49,6 @@ class _Player(Protocol):
     async def close(self) -> None: ...
 
 
-class _Kept(msgspec.Struct, frozen=True):
-    """One line of the file of records."""
-
-    digest: str
-    trial: Trial
-
-
 async def play_campaign(
     setting: Setting,
     seeds: Sequence[int],
@@ -79,7 +71,8 @@ async def play_campaign(
     world = world_deployment_of(setting, deployment, folder) if setting.by == "model" else None
     digest = _digest(setting, deployment, world)
     records = out / "missions.jsonl"
-    done = {trial.seed: trial for trial in _kept(records, digest)}
+    kept = kept_trials(records) if records.is_file() else ()
+    done = {each.trial.seed: each.trial for each in kept if each.digest == digest}
     remaining = [seed for seed in seeds if seed not in done]
     for seed in seeds:
         if seed in done:
@@ -88,7 +81,7 @@ async def play_campaign(
     def keep(trial: Trial) -> None:
         done[trial.seed] = trial
         with records.open("ab") as file:
-            file.write(msgspec.json.encode(_Kept(digest, trial)) + b"\n")
+            file.write(msgspec.json.encode(KeptTrial(digest, trial)) + b"\n")
         on_trial()
 
     player: _Player
@@ -136,19 +129,6 @@ async def _player(
     if setting.by == "model":
         return await ModelPlayer.prepared(ModelMissions.of(deployment, world), on_progress)
     return SystemPlayer(deployment, out / "runs")
-
-
-def _kept(records: Path, digest: str) -> list[Trial]:
-    """Reads what was recorded with the same documents and settings; a line that was cut short is left out."""
-    trials = []
-    for line in records.read_bytes().splitlines() if records.is_file() else ():
-        try:
-            kept = msgspec.json.decode(line, type=_Kept)
-        except UNREADABLE:
-            continue
-        if kept.digest == digest and not kept.trial.fault:
-            trials.append(kept.trial)
-    return trials
 
 
 def _digest(setting: Setting, deployment: Deployment, world: Deployment | None) -> str:

@@ -17,7 +17,7 @@ from aos_lab.trials.claims import Claim, When
 from aos_lab.trials.trial import NOTHING_OBSERVED
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import Project, Skill
+from aos_protocol.documents import DEFAULT_RESPONSE, Project, Skill
 from aos_protocol.errors import AosError
 
 _WILD = re.compile(r"[*?\[]")
@@ -110,7 +110,7 @@ class ClaimNames:
         if any(skill.mapping.response_variable for skill in skills):
             return
         known = dict.fromkeys(rule.response for skill in skills for rule in skill.mapping.rules)
-        known["DefaultObservation"] = None
+        known[DEFAULT_RESPONSE] = None
         if not any(fnmatchcase(each, response) for each in known):
             message = f"a claim names the response {response} of {_named(skills)}, which never gives it"
             self._findings.unknown(response, known, message, where, known_names(known))

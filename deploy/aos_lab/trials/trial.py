@@ -1,9 +1,12 @@
 """One mission that was run for its record: what was done, what came back, how it ended."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import msgspec
+
+from aos_protocol.codec import UNREADABLE
 
 NOTHING_OBSERVED = "no observation"
 """The text in a step that brought none; no response has a space."""
@@ -56,6 +59,24 @@ def _step_of(state: str, number: int) -> int:
         return number
     step: int = json.loads(state).get("step", number)
     return step
+
+
+class KeptTrial(msgspec.Struct, frozen=True):
+    """One line of the file of records, with the digest of what the mission was run with."""
+
+    digest: str
+    trial: Trial
+
+
+def kept_trials(records: Path) -> Iterator[KeptTrial]:
+    """Yields the missions of a file of records that did not break; a line that was cut short is left out."""
+    for line in records.read_bytes().splitlines():
+        try:
+            kept = msgspec.json.decode(line, type=KeptTrial)
+        except UNREADABLE:
+            continue
+        if not kept.trial.fault:
+            yield kept
 
 
 def truth_lines(run: Path) -> list[str]:

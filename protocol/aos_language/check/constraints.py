@@ -8,7 +8,8 @@ from collections.abc import Iterable, Sequence
 from aos_language.assembly import Assembly
 from aos_language.check.models.blocks import Block, Role
 from aos_language.check.models.model_code import check_block
-from aos_language.check.scope import STATE_COPIES, Scope
+from aos_language.check.scope import Scope
+from aos_language.cpp.keywords import DRAW_SOURCES, STATES
 from aos_language.cpp.snippets import Access, Cpp, read_cpp_expression, strip_comments
 from aos_language.cpp.tokens import line_and_column
 from aos_language.findings import Findings
@@ -18,13 +19,12 @@ CONSTRAINT = Role("a constraint", ("state", "state__"), sees_chosen_action=True)
 CONDITION = Role("a condition", ("state",))
 
 _LANGUAGE = frozenset({"NULL", "false", "nullptr", "std", "true"})
-_DRAWS = frozenset({"AOS", "AOSUtils"})
 
 
 def check_constraints(constraints: Iterable[Constraint], project: Project, findings: Findings) -> None:
     """Reports what a constraint names and the project does not have, and constraints that decide nothing."""
     scope = _scope_of(project)
-    names = (*STATE_COPIES, *scope.skills)
+    names = (*STATES, *scope.skills)
     hint = "Write it over `state`, `state__` and the names of skills, as `serve && state.is_out`"
     for constraint in constraints:
         cpp = _checked(constraint.never, CONSTRAINT, names, scope, findings)
@@ -85,7 +85,7 @@ def _check_names(
         if name in own or name in _LANGUAGE or name in names:
             continue
         span = snippet.locate(mention.root.line, mention.root.column)
-        if name in _DRAWS:
+        if name in DRAW_SOURCES:
             hint = "Name the state that the draw leads to, as `state__.is_out`"
             findings.error("AOS142", f"{role.title} that draws at random", span, hint)
         elif mention.access is not Access.CALL:

@@ -1,12 +1,11 @@
 """The declarations of mission parameters: one value or a structure of such, there before any state is."""
 
 from aos_language.check.scope import Scope
+from aos_language.cpp.keywords import DRAW_SOURCES
 from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_expression
 from aos_language.findings import Findings
 from aos_language.mission_parameters import parameter_leaves
 from aos_protocol.documents import Environment, Snippet, StateVariable
-
-_DRAWS = frozenset({"AOS", "AOSUtils"})
 
 
 def check_mission_parameters(environment: Environment, scope: Scope, findings: Findings) -> None:
@@ -51,7 +50,7 @@ def _check_default(
     for mention in cpp.mentions:
         root = mention.path[0]
         span = snippet.locate(mention.root.line, mention.root.column)
-        if root in _DRAWS or root in scope.shared.drawing:
+        if root in DRAW_SOURCES or root in scope.shared.drawing:
             message = f"the default of the mission parameter {variable.name} is drawn at random"
             hint = "It is the same in all states of a mission; let the initial belief draw a state variable"
             findings.error("AOS124", message, span, hint)

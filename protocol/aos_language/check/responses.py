@@ -5,18 +5,16 @@ from difflib import get_close_matches
 
 from aos_language.check.models.blocks import DYNAMIC, Block, assignment_blocks, read_block
 from aos_language.check.models.response_values import check_response_values
-from aos_language.check.scope import STATE_COPIES, Scope
-from aos_language.cpp.keywords import SPECIAL_NAMES
+from aos_language.check.scope import Scope
+from aos_language.cpp.keywords import SPECIAL_NAMES, STATES
 from aos_language.cpp.snippets import Access, Cpp, DeclarationKind, Mention
 from aos_language.cpp.values import values
 from aos_language.derived_mapping import sets_response
 from aos_language.findings import Findings
-from aos_protocol.documents import AbstractionMapping, SkillModel
+from aos_protocol.documents import DEFAULT_RESPONSE, AbstractionMapping, SkillModel
 from aos_protocol.spelling import quoted
 
 _RESPONSES = frozenset({"__moduleResponse", "__moduleResponseStr"})
-_NO_RESPONSE = "DefaultObservation"
-"""This response comes back where nothing says it: of a model, and of a mapping without rules."""
 _KNOWN_TO_CPP = frozenset({"AOS", "AOSUtils", "false", "nullptr", "NULL", "this", "true"})
 
 
@@ -91,7 +89,7 @@ def _check_any_response(
     given = tuple(dict.fromkeys(rule.response for rule in mapping.rules))
     # A name that is nearly one of the two is told where it stands.
     is_set = any(get_close_matches(name, _RESPONSES, n=1, cutoff=0.85) for name in mentioned)
-    if is_set or _NO_RESPONSE in given or not (given or mapping.response_variable):
+    if is_set or DEFAULT_RESPONSE in given or not (given or mapping.response_variable):
         return False
     word = "__moduleResponseStr" if mapping.response_variable else "__moduleResponse"
     hint = f"Set it: the abstraction mapping gives {quoted(given)}"
@@ -163,7 +161,7 @@ def _own_names(model: SkillModel, read: list[tuple[Block, Cpp]]) -> tuple[set[st
 
 
 def _known_names(model: SkillModel, scope: Scope, read: list[tuple[Block, Cpp]]) -> set[str]:
-    known = {*SPECIAL_NAMES, *_KNOWN_TO_CPP, *STATE_COPIES, *scope.enum_values, *scope.enums}
+    known = {*SPECIAL_NAMES, *_KNOWN_TO_CPP, *STATES, *scope.enum_values, *scope.enums}
     known |= scope.shared.all_names
     known |= {*scope.low_level_names, *(parameter.name for parameter in model.parameters)}
     blocks = (model.precondition, model.execution_time, model.dynamic_model)

@@ -15,7 +15,6 @@ from aos_protocol import documents
 
 NUMBERS = frozenset({"bool", "double", "float", "int"})
 PRIMITIVES = NUMBERS | {"anyValue", "string"}
-STATE_COPIES = ("state", "state_", "state__", "state___")
 
 _LIBRARY_TYPES = frozenset({
     "array", "auto", "bool", "char", "const", "deque", "double", "float", "int", "int16_t", "int32_t",

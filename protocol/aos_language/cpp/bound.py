@@ -4,7 +4,7 @@ import re
 from collections import Counter
 
 from aos_language.cpp.facts import Access, Cpp, Declaration, Mention
-from aos_language.cpp.flow import STATES
+from aos_language.cpp.keywords import STATES
 
 _LOOP_COLON = re.compile(r"\s*:\s*")
 

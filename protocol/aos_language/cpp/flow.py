@@ -12,11 +12,9 @@ import msgspec
 import tree_sitter
 
 from aos_language.cpp.facts import CHANGING_METHODS, HANDLE_METHODS, READING_FUNCTIONS, READING_METHODS, Cpp
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.nodes import below, picks_member, text_of
 from aos_language.cpp.tree import tree_of
-
-STATES = frozenset({"state", "state_", "state__", "state___"})
-"""The copies of the state; `state.x` and `state__.x` are one name."""
 
 
 class Name(msgspec.Struct, frozen=True):

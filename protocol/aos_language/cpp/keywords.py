@@ -15,7 +15,13 @@ CPP_KEYWORDS = frozenset({
     "wchar_t", "while", "xor", "xor_eq",
 })  # fmt: skip
 
-OUR_NAMES = frozenset({"AOS", "AOSUtils", "NULL", "state", "state_", "state__", "state___"})
+DRAW_SOURCES = frozenset({"AOS", "AOSUtils"})
+"""The objects of model code that draw."""
+
+STATES = ("state", "state_", "state__", "state___")
+"""The copies of the state that model code sees; `state.x` and `state__.x` are one variable."""
+
+OUR_NAMES = frozenset({"NULL", *DRAW_SOURCES, *STATES})
 """Names that model code has without a declaration."""
 
 SPECIAL_NAMES = frozenset({

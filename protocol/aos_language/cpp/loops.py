@@ -13,6 +13,7 @@ import msgspec
 import tree_sitter
 
 from aos_language.cpp.facts import Cpp
+from aos_language.cpp.keywords import DRAW_SOURCES
 from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.tree import tree_of
 
@@ -27,7 +28,7 @@ class Scope(msgspec.Struct, frozen=True):
 
     variables: frozenset[str] = frozenset()
     lambdas: frozenset[str] = frozenset()
-    drawing: frozenset[str] = frozenset({"AOS", "AOSUtils"})
+    drawing: frozenset[str] = DRAW_SOURCES
     captured: frozenset[str] = frozenset()
 
     def with_variables(self, names: Iterable[str]) -> Scope:

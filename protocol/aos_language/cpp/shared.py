@@ -13,6 +13,7 @@ import msgspec
 import tree_sitter
 
 from aos_language.cpp.facts import READING_FUNCTIONS
+from aos_language.cpp.keywords import DRAW_SOURCES
 from aos_language.cpp.nodes import below, field_text, text_of
 from aos_language.cpp.snippets import Cpp, read_cpp_declarations
 from aos_language.cpp.tokens import Extent, Lines
@@ -121,7 +122,6 @@ class SharedCode(msgspec.Struct, frozen=True):
 
 NO_SHARED_CODE = SharedCode(Cpp(""))
 
-_SOURCES = frozenset({"AOS", "AOSUtils"})
 _OTHER_TYPES = re.compile(r"\b(?:auto|decltype|function|iterator)\b|[*&]")
 _CONSTANT_REFERENCE = re.compile(r"const\b[^*&]*&|[^*&]*\bconst\s*&")
 _HINT = "Shared code has constants, functions, enums and names of types"
@@ -155,7 +155,7 @@ class _Reading:
         self._late |= {name for name in functions if name}
         for node in root.named_children:
             self._declaration(node)
-        drawing = self._closure({name for name, words in self._words.items() if words & _SOURCES})
+        drawing = self._closure({name for name, words in self._words.items() if words & DRAW_SOURCES})
         plain = {function.name for function in self._functions if function.only_reads}
         changing = self._closure({function.name for function in self._functions} - plain) | drawing
         found = [
@@ -223,7 +223,7 @@ class _Reading:
                 )
             elif value.type == "lambda_expression":
                 self._misuse(name, f"`{text_of(name)}` is a lambda", "Write a function")
-            elif _SOURCES & set(_identifiers(value)):
+            elif DRAW_SOURCES & set(_identifiers(value)):
                 self._misuse(name, f"the constant `{text_of(name)}` is drawn", "Draw where it is needed")
             self._add(node, name, "constant")
 
@@ -260,7 +260,7 @@ class _Reading:
         if text_of(name) in READING_FUNCTIONS:
             message = f"`{text_of(name)}` is a function of C++ already"
             self._misuse(name, message, "Choose another name")
-        for source in (part for part in below(parameters) if text_of(part) in _SOURCES):
+        for source in (part for part in below(parameters) if text_of(part) in DRAW_SOURCES):
             message = f"`{text_of(source)}` is no parameter: a function that draws has it by itself"
             self._misuse(source, message, "Leave the parameter out, and call the function without it")
         declared = [parameter for parameter in parameters.named_children if parameter.type != "comment"]

@@ -25,6 +25,7 @@ __all__ = [
     "Fault",
     "FaultKind",
     "Mention",
+    "blanked",
     "read_cpp",
     "read_cpp_declarations",
     "read_cpp_expression",
@@ -34,13 +35,14 @@ __all__ = [
 
 def strip_comments(code: str) -> str:
     """The code with comments blanked, so that offsets and lines stay."""
-    return _without(cut(code).comments, code)
+    return blanked(code, cut(code).comments)
 
 
-def _without(comments: Iterable[Extent], code: str) -> str:
+def blanked(code: str, extents: Iterable[Extent]) -> str:
+    """The code with blanks in place of some of its parts; lines stay."""
     characters = list(code)
-    for comment in comments:
-        for index in range(comment.start, comment.end):
+    for extent in extents:
+        for index in range(extent.start, extent.end):
             if characters[index] != "\n":
                 characters[index] = " "
     return "".join(characters)
@@ -68,7 +70,7 @@ def read_cpp_declarations(code: str) -> Cpp:
 
 
 def _read(code: str, tokens: Tokens, *, before: str, after: str) -> Cpp:
-    is_empty = not _without(tokens.comments, code).strip()
+    is_empty = not blanked(code, tokens.comments).strip()
     if tokens.faults or is_empty:
         return Cpp(code, literals=tokens.literals, faults=tokens.faults, is_empty=is_empty)
     complete = Cpp(code, missing_semicolons=tokens.missing_semicolons).complete

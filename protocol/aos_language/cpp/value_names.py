@@ -5,7 +5,7 @@ import re
 import tree_sitter
 
 from aos_language.cpp.facts import Cpp, DeclarationKind
-from aos_language.cpp.flow import STATES
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.tokens import Extent, Lines
 from aos_language.cpp.tree import tree_of

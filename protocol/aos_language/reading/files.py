@@ -12,7 +12,7 @@ from aos_language.reading.picture_file import PICTURE, check_picture
 from aos_language.reading.sdl_document import read_sdl
 from aos_language.reading.sdl_words import GRAMMARS
 from aos_language.reading.source import open_source
-from aos_protocol.diagnostics import Diagnostic, Span
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
 
 MAX_BUNDLE_FILES = 1000
 MAX_BUNDLE_BYTES = 8 * 1024 * 1024
@@ -24,6 +24,12 @@ def is_document_name(name: str) -> bool:
         return True
     suffix = PurePath(name).suffix.lower()
     return not PurePath(name).name.startswith(".") and (suffix == ".json" or suffix in GRAMMARS)
+
+
+def left_out(name: str) -> Diagnostic:
+    """The remark on a file that is not read."""
+    hint = "It is left out; documents end in .ef, .sd, .am, .lf or .json"
+    return Diagnostic(Severity.REMARK, "AOS107", "this is not an AOS document", Span(name), hint)
 
 
 class ReadFile(msgspec.Struct, frozen=True):
@@ -86,8 +92,7 @@ def _read(name: str, data: bytes, findings: Findings) -> Document | None:
         findings.error("AOS120", f"{name!r} is no plain file name", Span(name))
         return None
     if not is_document_name(name):
-        hint = "It is left out; documents end in .ef, .sd, .am, .lf or .json"
-        findings.remark("AOS107", "this is not an AOS document", Span(name), hint)
+        findings.add(left_out(name))
         return None
     source = open_source(name, data, findings)
     if source is None:

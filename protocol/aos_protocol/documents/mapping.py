@@ -101,6 +101,9 @@ class Activation(msgspec.Struct, frozen=True):
     max_duration_s: float | None = None
 
 
+DEFAULT_RESPONSE = "DefaultObservation"
+"""This response comes back where nothing says it: of a model, and of a mapping without rules."""
+
 NO_ACTIVATION = Activation("monitor", "", Span(""))
 """The activation of a monitor's mapping, which calls nothing."""
 

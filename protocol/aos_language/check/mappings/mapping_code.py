@@ -2,7 +2,6 @@
 
 import ast
 import keyword
-import re
 from collections.abc import Iterable, Iterator
 
 from aos_language.check.mappings import python_names
@@ -27,9 +26,8 @@ from aos_protocol.documents import (
     SkillModel,
     Snippet,
 )
+from aos_protocol.keys import PATH
 from aos_protocol.spelling import nearest, quoted
-
-_PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 
 
 def check_mapping(
@@ -98,7 +96,7 @@ def snippets_of_mapping(mapping: AbstractionMapping) -> Iterator[Snippet]:
 
 
 def _check_path(path: str, span: Span, findings: Findings) -> None:
-    if not _PATH.fullmatch(path):
+    if not PATH.fullmatch(path):
         hint = "A path is made of letters, digits, _ and -, with / between"
         findings.error("AOS126", f"{path!r} cannot be a path", span, hint)
 

@@ -17,8 +17,9 @@ from importlib import import_module
 
 import msgspec
 
-from aos_language.check.scope import STATE_COPIES, Scope
+from aos_language.check.scope import Scope
 from aos_language.check.shared_calls import check_python_call
+from aos_language.cpp.keywords import STATES
 from aos_language.findings import Findings
 from aos_language.local_types import OF_SKILL
 from aos_language.python_syntax import module_of, names_bound_by, own_scope, place_in, place_of_byte
@@ -287,7 +288,7 @@ def _hint(name: str, names: PythonNames) -> str:
         return f"Python writes `{_OF_OTHER_LANGUAGES[name.lower()]}`"
     if name in names.local_names:
         return "A first value is made when there is no local variable yet: write a constant"
-    if name in STATE_COPIES:
+    if name in STATES:
         return "A mapping knows its local variables, not the state of the model"
     if name == _INPUT:
         return "It is there in the code of a local variable: make one of it, and name that one here"

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 import msgspec
 
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_declarations, read_cpp_expression
 from aos_protocol.documents import Assignment, Environment, Iteration, SkillModel, Snippet
 
@@ -47,7 +48,6 @@ def read_block(block: Block) -> Cpp:
     return (read_cpp_expression if block.is_expression else read_cpp)(block.snippet.code)
 
 
-STATES = ("state", "state_", "state__", "state___")
 DEFAULT = Role("the default of a variable", ("state",), ("state",), may_set_parameter_values=True)
 SHARED = Role("shared code", STATES, STATES)
 INITIAL = Role("the initial belief", ("state",), ("state",))

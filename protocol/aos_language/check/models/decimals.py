@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from aos_language.check.models.blocks import DURATION, Block, environment_blocks, read_block, skill_blocks
-from aos_language.check.scope import STATE_COPIES, Scope, ValueType
+from aos_language.check.scope import Scope, ValueType
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Access, Cpp, Extent, Mention
 from aos_language.findings import Findings
 from aos_protocol.documents import Environment
@@ -92,7 +93,7 @@ def _last_name(path: tuple[str, ...]) -> str:
 def _type_of(path: tuple[str, ...], block: Block, scope: Scope) -> str:
     """The type at the end of an access path of the documents; empty for another."""
     root, *parts = path
-    is_state = root in STATE_COPIES and parts
+    is_state = root in STATES and parts
     kind = scope.state_member(parts.pop(0)) if is_state else ValueType(block.names.get(root, ""))
     for part in parts:
         if kind is not None and part == "[]":

@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterable, Iterator, Set
 
 from aos_language.check.models.blocks import Block, titles_with
-from aos_language.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
+from aos_language.check.scope import NUMBERS, Scope, ValueType
 from aos_language.cpp.absent import without_null
 from aos_language.cpp.bound import bound_paths, changes_bound
-from aos_language.cpp.keywords import COMPILER_NAMES, SPECIAL_NAMES
+from aos_language.cpp.keywords import COMPILER_NAMES, SPECIAL_NAMES, STATES
 from aos_language.cpp.snippets import Access, Cpp, Extent, Mention
 from aos_language.document_code import absent_skills
 from aos_language.findings import Findings
@@ -48,7 +48,7 @@ class MentionCheck:
         """Skills that extrinsic code looks for, and that may have been left out."""
         if not self._block.role.sees_chosen_action or self._scope.has_unread_files:
             return frozenset()
-        known = {*self._scope.skills, *self._block.names, *self._declared, *STATE_COPIES, *LITERAL_NAMES}
+        known = {*self._scope.skills, *self._block.names, *self._declared, *STATES, *LITERAL_NAMES}
         return absent_skills(self._cpp, known | {"NULL"})
 
     def check(self, mention: Mention) -> None:
@@ -58,17 +58,17 @@ class MentionCheck:
             self._check_drawing_function(mention, root)
         if root in self._bound and changes_bound(self._cpp, mention):
             self._check_bound(mention, self._bound[root])
-        is_parameter = self._block.is_declarations and root in STATE_COPIES and root in self._locals
+        is_parameter = self._block.is_declarations and root in STATES and root in self._locals
         if mention.access is Access.CALL or (root in self._locals and not is_parameter):
             return
         if is_parameter:
             # Of whatever copy it may be, a `state` in shared code is what a function is given.
             self._check_state_path(mention)
-        elif self._block.is_declarations and root in STATE_COPIES:
+        elif self._block.is_declarations and root in STATES:
             hint = f"Give the function a parameter, as `const auto& {root}`, or `auto& {root}` to change it"
             message = f"there is no `{root}` in shared code by itself"
             self._findings.error("AOS123", message, self._span(mention.root), hint)
-        elif root in STATE_COPIES:
+        elif root in STATES:
             self._check_copy(mention, root)
             self._check_state_path(mention)
         elif root in self._block.names:

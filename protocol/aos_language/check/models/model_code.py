@@ -4,19 +4,13 @@ from collections.abc import Iterable
 
 import msgspec
 
-from aos_language.check.models.blocks import (
-    DEFAULT,
-    STATES,
-    Block,
-    environment_blocks,
-    read_block,
-    skill_blocks,
-)
+from aos_language.check.models.blocks import DEFAULT, Block, environment_blocks, read_block, skill_blocks
 from aos_language.check.models.built_ins import BUILT_INS, check_built_in
 from aos_language.check.models.mentions import LITERAL_NAMES, MentionCheck, check_objects, listing
 from aos_language.check.models.weights import check_weights
 from aos_language.check.scope import Scope
 from aos_language.check.shared_calls import check_shared_call
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Call, Cpp, DeclarationKind, Extent, FaultKind, read_cpp
 from aos_language.cpp.tokens import line_and_column
 from aos_language.cpp.unset import unset_reads

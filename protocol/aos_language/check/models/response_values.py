@@ -7,7 +7,8 @@ import re
 from collections.abc import Iterable
 
 from aos_language.check.models.blocks import Block
-from aos_language.check.scope import STATE_COPIES, Scope
+from aos_language.check.scope import Scope
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Cpp
 from aos_language.cpp.tokens import line_and_column
 from aos_language.cpp.values import values
@@ -47,7 +48,7 @@ def check_response_values(
 def _type_of(value: str, block: Block, cpp: Cpp, scope: Scope) -> str:
     """The type of a name that is a number or an enum's value; empty for others, and where nobody knows."""
     copy, _, name = value.rpartition(".")
-    if copy in STATE_COPIES and (member := scope.state_member(name)) is not None:
+    if copy in STATES and (member := scope.state_member(name)) is not None:
         kind = "" if member.is_container else member.name
     else:
         declared = {declaration.name: declaration.type for declaration in cpp.declarations}

@@ -12,10 +12,9 @@ from aos_gateway.operations import Content
 from aos_gateway.runs.run import KeptRun
 from aos_gateway.shared import Gateway
 from aos_protocol.errors import GatewayError, StorageError
+from aos_protocol.keys import NAME
 
 _LOG_BYTES = 200_000
-_SERVICE = re.compile(r"[A-Za-z0-9_-]{1,64}")
-"""A record that somebody has sent may name anything, and a log is named by its service."""
 _PICTURE = re.compile(r"(?:step-?)?0*(\d+)\.(png|jpg)")
 
 
@@ -60,7 +59,8 @@ async def services(gateway: Gateway, run: str) -> Services:
 async def log(gateway: Gateway, run: str, service: str, query: OfLog) -> Content:
     """The end of a service's log, as text."""
     found = _kept(gateway, run)
-    if not _SERVICE.fullmatch(service) or service not in found.directory.read_record().pids:
+    # A record that somebody has sent may name anything, and a log is named by its service.
+    if not NAME.fullmatch(service) or service not in found.directory.read_record().pids:
         raise GatewayError(f"the run {run} has no service {service}")
     return Content(await asyncio.to_thread(_tail, found, service, query.tail), "text/plain; charset=utf-8")
 

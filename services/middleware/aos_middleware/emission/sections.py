@@ -11,7 +11,13 @@ from aos_language.local_types import OF_SKILL
 from aos_middleware.emission.generated_lines import literal, word
 from aos_middleware.emission.python_code import LineOrigin, PythonCode
 from aos_middleware.emission.read_snippets import ReadSnippets, function_name
-from aos_protocol.documents import AbstractionMapping, LocalSource, LocalVariable, ResponseRule
+from aos_protocol.documents import (
+    DEFAULT_RESPONSE,
+    AbstractionMapping,
+    LocalSource,
+    LocalVariable,
+    ResponseRule,
+)
 
 _HAS_ENDED, _HAS_FAILED = (f"__skill_status {test} ('succeeded', 'stopped')" for test in ("in", "not in"))
 """Tests of whether the skill has failed, for rules without these names beside rules with them."""
@@ -148,7 +154,7 @@ class Sections:
             return self._observe_text(mapping.response_variable)
         if not mapping.rules:
             summary = "The response: the skill's only one."
-            return Function("observe", "", summary, ('    return "DefaultObservation"',))
+            return Function("observe", "", summary, (f'    return "{DEFAULT_RESPONSE}"',))
         conditions = [
             None if rule.condition is None else self._snippets.expression(rule.condition)
             for rule in mapping.rules

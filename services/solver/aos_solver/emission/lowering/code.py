@@ -14,6 +14,7 @@ from aos_language.cpp.snippets import (
     Cpp,
     DeclarationKind,
     FaultKind,
+    blanked,
     read_cpp,
     read_cpp_declarations,
     read_cpp_expression,
@@ -141,7 +142,7 @@ class Pieces:
             if fault.kind is not FaultKind.SYNTAX:
                 span = snippet.locate(fault.extent.line, fault.extent.column)
                 self._findings.error("AOS108", fault.message, span)
-        code = _without_texts(cpp)
+        code = blanked(strip_comments(cpp.code), cpp.literals)
         self.identifiers.update(re.findall(r"[A-Za-z_]\w*", code))
         functions = (call.name for call in cpp.calls if len(call.name) == 1 or call.name[:1] == ("std",))
         named = {part for name in functions for part in name}
@@ -155,16 +156,6 @@ class Pieces:
             self._findings.error(
                 "AOS124", f"`{name}` makes a step that cannot be repeated exactly", span, hint
             )
-
-
-def _without_texts(cpp: Cpp) -> str:
-    """The code with comments and literals blanked."""
-    characters = list(strip_comments(cpp.code))
-    for literal in cpp.literals:
-        for index in range(literal.start, literal.end):
-            if characters[index] != "\n":
-                characters[index] = " "
-    return "".join(characters)
 
 
 class SectionLowering:

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 import msgspec
 
 from aos_language.cpp.facts import READING_FUNCTIONS
+from aos_language.cpp.keywords import DRAW_SOURCES
 from aos_language.cpp.snippets import Access, Call, Cpp, DeclarationKind, Extent, Mention, strip_comments
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_protocol.documents import Assignment, Environment, SkillModel
@@ -169,7 +170,7 @@ def _views_in(cpp: Cpp, value: Extent, names: _Names) -> Iterator[Extent]:
 
 
 def _gives_value(call: Call, names: _Names) -> bool:
-    return bool(call.name) and (call.name[0] in ("AOS", "AOSUtils") or call.name[-1] in names.giving_values)
+    return bool(call.name) and (call.name[0] in DRAW_SOURCES or call.name[-1] in names.giving_values)
 
 
 def _given_to(functions: frozenset[str], cpp: Cpp) -> Iterator[Extent]:

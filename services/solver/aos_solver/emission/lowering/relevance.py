@@ -16,7 +16,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from aos_language.cpp.flow import STATES, Flow, Flows, Locals, Name, flows_of
+from aos_language.cpp.flow import Flow, Flows, Locals, Name, flows_of
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_expression
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_language.observed import is_draw

@@ -1,6 +1,6 @@
 """The reads in calls of shared functions: functions that only read may be looked through."""
 
-from aos_language.cpp.flow import STATES
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.shared import SharedCode, SharedFunction
 from aos_language.cpp.snippets import Cpp, Extent
 

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from aos_language.cpp.facts import READING_FUNCTIONS
-from aos_language.cpp.flow import STATES
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.shared import SharedFunction
 from aos_language.cpp.snippets import (
     Access,
@@ -152,7 +152,7 @@ def changes_of(project: Project, *, after_start: bool = False) -> Changes:
             continue
         copies = phase.changes
         if environment.is_one_state_model and phase.changes:
-            copies = STATES
+            copies = frozenset(STATES)
         for assignment in assignments:
             for loop in (*assignment.over_previous, *assignment.over_next):
                 changes.walk(loop.type)

@@ -3,11 +3,11 @@
 import re
 from collections.abc import Iterator
 
+from aos_language.cpp.keywords import DRAW_SOURCES
 from aos_language.cpp.snippets import Cpp, strip_comments
 
 _INTRODUCER = re.compile(r"(?<![\w\])])\s*\[([^\[\]]*)\]\s*(?=[({]|mutable\b|->)")
 _BY_REFERENCE = re.compile(r"\s*&\s*(?:,|$)")
-_SOURCES = ("AOS", "AOSUtils")
 
 
 def capture_edits(cpp: Cpp, drawing: frozenset[str]) -> Iterator[tuple[int, int, str]]:
@@ -16,7 +16,7 @@ def capture_edits(cpp: Cpp, drawing: frozenset[str]) -> Iterator[tuple[int, int,
     `[](double p) { return AOS.Bernoulli(p); }` becomes `[&AOS](double p) ...`, and `[=]` becomes `[=, &AOS]`.
     """
     code = strip_comments(cpp.code)
-    drawn = [(m.extent.start, m.path[0]) for m in cpp.mentions if m.path[0] in _SOURCES]
+    drawn = [(m.extent.start, m.path[0]) for m in cpp.mentions if m.path[0] in DRAW_SOURCES]
     drawn += [(call.extent.start, "AOS") for call in cpp.calls if call.name[:1] and call.name[0] in drawing]
     for found in _INTRODUCER.finditer(code) if drawn else ():
         if _BY_REFERENCE.match(found[1]) or any(

@@ -7,7 +7,7 @@ block of code fills with constants anew in each run costs more than the rest of 
 import re
 from collections.abc import Iterator
 
-from aos_language.cpp.flow import STATES
+from aos_language.cpp.keywords import DRAW_SOURCES, STATES
 from aos_language.cpp.snippets import Access, Call, Cpp, Declaration, DeclarationKind
 
 _CONTAINER_REFERENCE = re.compile(
@@ -126,9 +126,7 @@ def _places_of_state(cpp: Cpp) -> set[int]:
 
 
 def _is_draw(call: Call) -> bool:
-    return (
-        call.name[-1:] == ("SampleDiscrete",) and call.name[0] in ("AOS", "AOSUtils") and bool(call.arguments)
-    )
+    return call.name[-1:] == ("SampleDiscrete",) and call.name[0] in DRAW_SOURCES and bool(call.arguments)
 
 
 def _is_constant(text: str, values: frozenset[str]) -> bool:

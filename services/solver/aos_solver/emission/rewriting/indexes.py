@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from aos_language.cpp.facts import Element
-from aos_language.cpp.flow import STATES
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Cpp
 
 

@@ -6,7 +6,7 @@ What `state.<Type>Objects` points at is const where its state is; documents writ
 import re
 from collections.abc import Iterator
 
-from aos_language.cpp.flow import STATES
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Access, Cpp, Declaration, DeclarationKind, Extent, strip_comments
 
 _POINTER = re.compile(r"(\bconst\s+)?\b([A-Za-z_]\w*)\s*\*\s*$")

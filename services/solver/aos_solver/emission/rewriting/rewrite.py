@@ -5,8 +5,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import msgspec
 
-from aos_language.cpp.flow import STATES
 from aos_language.cpp.goal_conditions import Edits
+from aos_language.cpp.keywords import DRAW_SOURCES, STATES
 from aos_language.cpp.loops import DrawingLoop
 from aos_language.cpp.shared import SharedFunction
 from aos_language.cpp.snippets import Call, Cpp, Extent, strip_comments
@@ -181,7 +181,7 @@ def _of_reported(draw: Call) -> Iterator[tuple[Extent | int, str]]:
 
 
 def _of_call(call: Call, code: str, rewriting: Rewriting) -> Iterator[tuple[Extent | int, str]]:
-    if call.name[-1:] != ("SampleDiscrete",) or call.name[0] not in ("AOS", "AOSUtils"):
+    if call.name[-1:] != ("SampleDiscrete",) or call.name[0] not in DRAW_SOURCES:
         return
     if len(call.arguments) != 2:
         return

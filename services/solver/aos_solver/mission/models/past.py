@@ -9,13 +9,12 @@ from typing import Any
 
 import msgspec
 
+from aos_protocol.documents import DEFAULT_RESPONSE
 from aos_protocol.errors import ModelError
 from aos_protocol.messages import DecisionRecord, Outcome
 from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.child.engine import Engine
 from aos_solver.mission.rules.failures import Failures
-
-_DEFAULT_RESPONSE = "DefaultObservation"
 
 
 class Evidence(msgspec.Struct, frozen=True):
@@ -145,4 +144,4 @@ def _is_foreign(engine: Engine, evidence: Evidence) -> bool:
     if evidence.response is None or evidence.skill in engine.texting_skills:
         return False
     known = engine.description.responses[evidence.skill]
-    return evidence.response not in known and evidence.response != _DEFAULT_RESPONSE
+    return evidence.response not in known and evidence.response != DEFAULT_RESPONSE
