@@ -165,6 +165,14 @@ CODE = {
         "for (const auto& [key, value] : state__.stock) __reward += value;",
         9 + 100 + 9,
     ),
+    "merged": (
+        "std::map<int, int> more{{4, 1}, {7, 2}}; state__.stock.merge(more);"
+        "auto all = state.ParametersObjects;"
+        "__reward = 10 * state__.stock.size() + more.size() + (*state.ParametersObjects.rbegin())->weight +"
+        "std::count_if(all.begin(), all.end(), [](auto& box) { return box->weight == 2; });"
+        "for (auto&& box : state.ParametersObjects) __reward += box->weight; state__.stock = state.stock;",
+        30 + 1 + 2 + 3 + 6,
+    ),
     "method": (
         "struct Half { int n; Half(int m) : n(m / 2) {} }; static int const four = 4; Half half(amount);"
         "int most(std::max(amount, half.n)); __reward = half.n * four + most;",

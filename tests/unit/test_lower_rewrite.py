@@ -86,6 +86,8 @@ def test_plain_code_stands_as_it_is(code):
         ("vector<tBox*> a{&state__.one}; auto b = state.tBoxObjects[0];",
          "vector<tBox*> a{&state__.one}; auto b = state.tBoxObjects()[0];"),
         ("for (tBox* box : state.tBoxObjects) n++;", "for (auto* box : state.tBoxObjects()) n++;"),
+        ("for (auto&& a : state.tBoxObjects) for (tBox*& b : all) f = [](int i, auto& c) { c = 1; };",
+         "for (auto&& a : state.tBoxObjects()) for (auto&& b : all) f = [](int i, auto&& c) { c = 1; };"),
         ("tBox* a[2] = {&state.one, &state.two};",
          "aos::Pointer<tBox, decltype(state)> a[2] = {&state.one, &state.two};"),
         ("auto f = [](tBox* box) { return box->x; };", "auto f = [](auto* box) { return box->x; };"),

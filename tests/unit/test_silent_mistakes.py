@@ -266,6 +266,34 @@ def test_a_number_compared_with_a_text_in_a_mapping_is_told(rule, told):
     assert texts == told
 
 
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ("steps == 3", ["this line does nothing"]),
+        ("steps.data > 3", ["this line does nothing", "`steps` is of the type int, which has no `data`"]),
+        ("try:\n    __input.far\nexcept AttributeError:\n    print(steps.real)", []),
+    ],
+)
+def test_a_line_that_does_nothing_and_a_field_of_a_number_are_told(lines, told):
+    declared = "local_variable: far\ntopic: /far\nmessage_type: Far\ntype: int\ncode:\n"
+    mapping = f"{MAPPING}\n{declared}{lines}\nreturn __input.far\n"
+    texts = [one.message for one in found(mapping=mapping) if one.code == "AOS149"]
+    assert sorted(texts) == sorted(told)
+
+
+@pytest.mark.parametrize(
+    ("imported", "told"), [("Far", "Did you mean `Far`?"), ("*", ""), ("FarRequest", "")]
+)
+def test_a_type_called_nearly_as_an_imported_one_is_told(imported, told):
+    declared = (
+        f"local_variable: far\nimports: from: msgs import: {imported}\ntopic: /far\nmessage_type: far\n"
+    )
+    texts = [
+        one.hint for one in found(mapping=f"{MAPPING}\n{declared}code:\nreturn 1\n") if one.code == "AOS110"
+    ]
+    assert texts == [told] * bool(told)
+
+
 def test_a_missing_semicolon_before_a_copy_of_the_state_is_told_once():
     (only,) = found(skill=skill_after("float far = state.first.x"))
     assert (only.code, only.span.line) == ("AOS108", 10)
@@ -305,6 +333,26 @@ def test_a_real_number_that_rounding_makes_miss_a_decimal_is_told():
         ),
         ("if (steps =< 1) __reward = 1;", "9 AOS108 `=<` is no operator of C++. Write `<=`"),
         ("auto f = [steps] { return steps; }; __reward = f();", ""),
+        ("__reward = steps * (7/2);", "9 AOS149 `7/2` is 3 in C++. Write `7.0 / 2`"),
+        ("__reward = 4/2 + (steps ^ 1) + steps/2;", ""),
+        ("__reward = steps ^ 2;", "9 AOS149 `^` is no power in C++. Write `std::pow(steps, 2)`"),
+        (
+            "if (0 < steps < 3) __reward = 1;",
+            "9 AOS149 this compares the truth of `0 < steps` with `3`. Write `0 < steps && steps < 3`",
+        ),
+        ("if (std::max<int>(steps, 1) > 2 && (1 < steps) < 3) __reward = 1;", ""),
+        ("if (steps > 1); __reward = 1;", "9 AOS149 this semicolon ends the `if`. "),
+        ("for (int i = 0; i < 3; i++); { __reward = 1; }", "9 AOS149 this semicolon ends the `for`. "),
+        ("if (steps > 1) ; else __reward = 1; while (__reward++ < 3); __reward = 2;", ""),
+        (
+            "switch (steps) { case 1: __reward = 1; case 2: __reward = 2; }",
+            "9 AOS149 what stands here goes on into the next `case`. Write `break;`",
+        ),
+        (
+            "switch (steps) { case 0: case 1: if (steps) { break; } else return; case 2: { break; } /* */"
+            " case 3: __reward = 1; [[fallthrough]]; default: __reward = 2; }",
+            "",
+        ),
     ],
 )
 def test_code_that_does_nothing_or_loses_a_fraction_is_told(code, told):

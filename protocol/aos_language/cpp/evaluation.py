@@ -2,12 +2,18 @@
 
 import tree_sitter
 
-from aos_language.cpp.facts import CHANGING_METHODS, HANDLE_METHODS, READING_FUNCTIONS, READING_METHODS
+from aos_language.cpp.facts import (
+    CHANGING_METHODS,
+    EXCHANGING_METHODS,
+    HANDLE_METHODS,
+    READING_FUNCTIONS,
+    READING_METHODS,
+)
 from aos_language.cpp.flow import is_draw, names_in
 from aos_language.cpp.nodes import below, operator_of, text_of
 from aos_language.cpp.ways import State
 
-_READING_METHODS = (CHANGING_METHODS | HANDLE_METHODS | READING_METHODS) - {"swap"}
+_READING_METHODS = (CHANGING_METHODS | HANDLE_METHODS | READING_METHODS) - EXCHANGING_METHODS
 _NO_READS = frozenset({
     "comment", "qualified_identifier", "type_descriptor", "template_argument_list", "sizeof_expression",
     "declaration", "init_statement", "decltype",

@@ -8,10 +8,12 @@ import msgspec
 from aos_language.cpp.tokens import Extent, Fault
 
 CHANGING_METHODS = frozenset({
-    "append", "assign", "clear", "emplace", "emplace_back", "erase", "fill", "flip", "insert",
-    "insert_or_assign", "pop", "pop_back", "push", "push_back", "replace", "reserve", "resize", "swap",
-    "try_emplace",
+    "append", "assign", "clear", "emplace", "emplace_back", "emplace_front", "erase", "fill", "flip",
+    "insert", "insert_or_assign", "merge", "pop", "pop_back", "pop_front", "push", "push_back", "push_front",
+    "replace", "reserve", "resize", "swap", "try_emplace",
 })  # fmt: skip
+EXCHANGING_METHODS = frozenset({"merge", "swap"})
+"""Those that change what they are given as well."""
 HANDLE_METHODS = frozenset({
     "begin", "data", "end", "equal_range", "find", "lower_bound", "rbegin", "rend", "upper_bound",
 })  # fmt: skip
@@ -102,7 +104,8 @@ class Cpp(msgspec.Struct, frozen=True):
 
     `idle_operators` are `==` of statements that only compare, the comma before a number that does nothing,
     as in `x = 1,5;`, and the `+` of `x =+ 1;`. `idle_values` are other statements that only have a value, as
-    `x - 1;`. `set_in_conditions` are what conditions set, with the sign: `if (x = 1)`.
+    `x - 1;`. `set_in_conditions` are what conditions set, with the sign: `if (x = 1)`. `odd_parts` are what
+    does other than it seems to say, as `1/2`, with a message and a hint.
     """
 
     code: str
@@ -118,6 +121,7 @@ class Cpp(msgspec.Struct, frozen=True):
     idle_operators: tuple[Extent, ...] = ()
     idle_values: tuple[Extent, ...] = ()
     set_in_conditions: tuple[tuple[Extent, Extent], ...] = ()
+    odd_parts: tuple[tuple[Extent, str, str], ...] = ()
 
     @property
     def complete(self) -> str:

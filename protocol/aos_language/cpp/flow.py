@@ -11,7 +11,14 @@ from collections.abc import Iterator, Sequence
 import msgspec
 import tree_sitter
 
-from aos_language.cpp.facts import CHANGING_METHODS, HANDLE_METHODS, READING_FUNCTIONS, READING_METHODS, Cpp
+from aos_language.cpp.facts import (
+    CHANGING_METHODS,
+    EXCHANGING_METHODS,
+    HANDLE_METHODS,
+    READING_FUNCTIONS,
+    READING_METHODS,
+    Cpp,
+)
 from aos_language.cpp.keywords import STATES
 from aos_language.cpp.nodes import below, picks_member, text_of
 from aos_language.cpp.tree import tree_of
@@ -390,7 +397,7 @@ def _method_of(call: tree_sitter.Node) -> str:
 def _changed_by_method(node: tree_sitter.Node) -> tree_sitter.Node | None:
     """The object of a call such as `x.push_back(y)`, which changes nothing else."""
     method = _method_of(node)
-    if method not in CHANGING_METHODS or method == "swap":
+    if method not in CHANGING_METHODS - EXCHANGING_METHODS:
         return None
     function = node.child_by_field_name("function")
     return function.child_by_field_name("argument") if function is not None else None

@@ -20,6 +20,7 @@ from aos_language.cpp.facts import (
 )
 from aos_language.cpp.idle import idle_parts, is_turned
 from aos_language.cpp.nodes import below, child_of, names_of, operator_of, picks_member, text_of
+from aos_language.cpp.odd import odd_parts
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 from aos_protocol.spelling import nearest
 
@@ -49,6 +50,7 @@ class TreeReader:
         self.idle_operators: list[Extent] = []
         self.idle_values: list[Extent] = []
         self.set_in_conditions: list[tuple[Extent, Extent]] = []
+        self.odd_parts: list[tuple[Extent, str, str]] = []
 
     def read(self, root: tree_sitter.Node) -> Cpp:
         self._stack.append((root, Access.READ))
@@ -67,6 +69,7 @@ class TreeReader:
             idle_operators=tuple(sorted(self.idle_operators, key=lambda extent: extent.start)),
             idle_values=tuple(sorted(self.idle_values, key=lambda extent: extent.start)),
             set_in_conditions=tuple(sorted(self.set_in_conditions, key=lambda pair: pair[0].start)),
+            odd_parts=tuple(sorted(self.odd_parts, key=lambda part: part[0].start)),
         )
 
     def _visit(self, node: tree_sitter.Node, access: Access) -> None:
@@ -85,6 +88,7 @@ class TreeReader:
             self.faults.append(
                 Fault(FaultKind.SYNTAX, f"unexpected {text[0][:40]!r}", self.extent(node), hint)
             )
+        self.odd_parts += [(self.extent(part), told, hint) for part, told, hint in odd_parts(node)]
         handler = _HANDLERS.get(node.type)
         if handler is None:
             self._push(node.children)

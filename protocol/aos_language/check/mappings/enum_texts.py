@@ -12,6 +12,7 @@ from aos_protocol import documents
 from aos_protocol.spelling import nearest, quoted
 
 _OF_NUMBERS = frozenset({"abs", "chr", "float", "int", "round"})
+_PYTHON = {"bool": bool, "int": int, "float": float, "double": float, "string": str}
 _STATUSES = ("succeeded", "refused", "failed", "timed_out", "cancelled", "unknown", "stopped")
 _ORDERINGS = (ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
@@ -28,6 +29,7 @@ def check_enum_texts(
     kinds = {variable.name: _type_of(variable, model, scope) for variable in mapping.local_variables}
     enums = {name: scope.enums[kind] for name, kind in kinds.items() if kind in scope.enums}
     enums["__skill_status"] = documents.EnumType("__skill_status", _STATUSES, mapping.span)
+    kinds["__skill_status"] = "string"
     compounds = {name: scope.compounds[kind] for name, kind in kinds.items() if kind in scope.compounds}
     plain = {name: kind for name, kind in kinds.items() if kind in ELEMENTS}
     # A skill may take some of the values alone.
@@ -41,6 +43,11 @@ def check_enum_texts(
         known_plain = {name: kind for name, kind in plain.items() if name not in own}
         for node in nodes:
             if isinstance(node, ast.Attribute) and isinstance(value := node.value, ast.Name):
+                kind = known_plain.get(value.id, "string" if value.id in known else "")
+                if kind and not hasattr(_PYTHON[kind], node.attr):
+                    span = snippet.locate(value.lineno - lines_above, value.col_offset + 1)
+                    message = f"`{value.id}` is of the type {kinds[value.id]}, which has no `{node.attr}`"
+                    findings.warning("AOS149", message, span, f"Write `{value.id}` alone")
                 compound = None if value.id in own else compounds.get(value.id)
                 if compound is not None and node.attr in {field.name for field in compound.fields}:
                     span = snippet.locate(value.lineno - lines_above, value.col_offset + 1)

@@ -29,6 +29,9 @@ from aos_protocol.documents import (
 from aos_protocol.keys import PATH
 from aos_protocol.spelling import nearest, quoted
 
+_VALUES = (ast.Attribute, ast.BinOp, ast.Compare, ast.Name, ast.Subscript)
+_EFFECTS = (ast.Call, ast.NamedExpr)
+
 
 def check_mapping(
     mapping: AbstractionMapping, model: SkillModel | None, scope: Scope, findings: Findings, *, is_whole: bool
@@ -40,6 +43,7 @@ def check_mapping(
     if not mapping.monitor:
         _check_path(mapping.activation.path, mapping.activation.span, findings)
     _check_local_names(mapping, findings)
+    _check_classes(mapping, findings)
     names = python_names.PythonNames.of(mapping, model, scope)
     severity = Severity.ERROR if is_whole else Severity.WARNING
     _check_rules(mapping, model, names, scope, findings, severity)
@@ -99,6 +103,18 @@ def _check_path(path: str, span: Span, findings: Findings) -> None:
     if not PATH.fullmatch(path):
         hint = "A path is made of letters, digits, _ and -, with / between"
         findings.error("AOS126", f"{path!r} cannot be a path", span, hint)
+
+
+def _check_classes(mapping: AbstractionMapping, findings: Findings) -> None:
+    """Warns of a service or a message whose type is called nearly as one that the mapping imports."""
+    imported = {name for each in mapping.imports if each.module for name in each.names}
+    own = {name for name in imported if not name.endswith(("Request", "Response"))}
+    used = [(mapping.activation.service_type, mapping.activation.span)]
+    used += [(each.message_type, each.source_span or each.span) for each in mapping.local_variables]
+    for name, span in used if "*" not in imported else ():
+        if name and name not in imported and (close := nearest(name, own)):
+            message = f"nothing imports `{name}`"
+            findings.warning("AOS110", message, span, f"Did you mean `{close}`?")
 
 
 def _check_local_names(mapping: AbstractionMapping, findings: Findings) -> None:
@@ -205,7 +221,12 @@ def _check_ends(variable: LocalVariable, code: Snippet, tree: ast.AST, findings:
             span = place_in(code, node)
             hint = f"Write `return {variable.name}`, or `return None` where that is meant"
             findings.warning("AOS121", message, span, hint)
-    if variable.name in assigned:
+    if variable.name in assigned or (returns and variable.source is LocalSource.TOPIC):
+        for part in python_names.nodes_read(tree):
+            idle = part.value if isinstance(part, ast.Expr) else None
+            inner = () if idle is None or not isinstance(idle, _VALUES) else [*ast.walk(idle)]
+            if idle is not None and inner and not any(isinstance(each, _EFFECTS) for each in inner):
+                findings.warning("AOS149", "this line does nothing", place_in(code, idle))
         return
     if variable.source is LocalSource.SERVICE_RESPONSE:
         message = f"this code never assigns `{variable.name}`"

@@ -54,6 +54,8 @@ def _instead(code: str, wrong: str, mode: str) -> str:
         return f"Python writes `{turned[1]}=`"
     if (counted := _COUNTED.search(code)) is not None:
         return f"Python writes `{counted[1]} {counted[2]}= 1`"
+    if "else if" in code:
+        return "Python writes `elif`"
     if _OTHER_OPERATOR.search(code):
         return "Python writes `and`, `or`, `not`"
     if mode != "eval":

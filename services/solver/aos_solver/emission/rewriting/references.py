@@ -8,9 +8,11 @@ import re
 from collections.abc import Iterator
 
 from aos_language.cpp.bound import path_bound
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Cpp, DeclarationKind
 
 _TYPE = re.compile(r"(?:^|[;{}(])\s*([A-Za-z_][\w:]*(?:\s+[A-Za-z_][\w:]*)*)\s*[&*]\s*$")
+_ELEMENT = re.compile(r"(?:\bfor\s*\(|\]\s*\((?:[^()]*,)?)\s*((?:auto|[A-Za-z_]\w*\s*\*)\s*&)$")
 _NO_TYPE = re.compile(r"\b(?:auto|const|return|static)\b")
 
 
@@ -19,16 +21,20 @@ def reference_edits(cpp: Cpp) -> Iterator[tuple[int, int, str]]:
 
     - `int& level = state.level` and `for (int& level : state.levels)` become `auto& level`
     - `int* level = &state.levels[0]` becomes `auto* level`
-    - `for (auto& cup : state.tCupObjects)` becomes `auto&& cup`: the pointers are made on demand
+    - with `state.tCupObjects`, whose pointers are made on demand, `auto& cup` and `tCup*& cup` of a loop or a
+      lambda become `auto&& cup`
     """
+    has_objects = any(mention.path[-1].endswith("Objects") for mention in cpp.mentions)
     for declaration in cpp.declarations:
+        before = cpp.code[: declaration.extent.start].rstrip()
+        element = _ELEMENT.search(before) if has_objects and declaration.name not in STATES else None
+        if element is not None:
+            yield element.start(1), element.end(1), "auto&&"
+            continue
         if declaration.kind is not DeclarationKind.VARIABLE or declaration.type[-1:] not in ("&", "*"):
             continue
         path = path_bound(cpp, declaration)
         if not path:
             continue
-        before = cpp.code[: declaration.extent.start].rstrip()
-        if declaration.initial is None and declaration.type == "auto&" and path[-1].endswith("Objects"):
-            yield len(before), len(before), "&"
-        elif (found := _TYPE.search(before)) is not None and not _NO_TYPE.search(found[1]):
+        if (found := _TYPE.search(before)) is not None and not _NO_TYPE.search(found[1]):
             yield found.start(1), found.end(1), "auto"

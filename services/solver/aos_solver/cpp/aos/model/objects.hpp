@@ -70,6 +70,8 @@ class Objects {
   Iterator end() const { return {state_, static_cast<std::ptrdiff_t>(count)}; }
   Iterator cbegin() const { return begin(); }
   Iterator cend() const { return end(); }
+  auto rbegin() const { return std::reverse_iterator(end()); }
+  auto rend() const { return std::reverse_iterator(begin()); }
   operator std::vector<Pointer>() const { return {begin(), end()}; }
 
  private:

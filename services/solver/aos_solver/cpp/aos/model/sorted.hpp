@@ -86,6 +86,10 @@ class Sorted : public Store {
   std::pair<iterator, bool> emplace(Arguments&&... arguments) {
     return insert(T(std::forward<Arguments>(arguments)...));
   }
+  template <class Other>
+  void merge(Other&& other) {
+    for (auto at = other.begin(); at != other.end();) at = insert(T(*at)).second ? other.erase(at) : std::next(at);
+  }
   std::size_t erase(const Key& key) {
     const iterator at = find(key);
     if (at == end()) return 0;
