@@ -24,6 +24,7 @@ def pytest_configure() -> None:
         trust_documents()
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    gc.disable()  # Collecting tests leaves no garbage, in any of the processes that do so.
 
 
 def pytest_report_header() -> str:
@@ -63,3 +64,4 @@ def pytest_collection_finish() -> None:
     """Sets apart from garbage what stays for the whole run: thousands of tests."""
     gc.collect()
     gc.freeze()
+    gc.enable()

@@ -1,4 +1,4 @@
-from models import engine_of_bundle, engine_of_text, simulated
+from models import engine_of_bundle, engine_of_text
 from places import BUNDLES
 
 from aos_solver.child.engine import Restriction
@@ -78,13 +78,6 @@ async def test_the_tiger_is_listened_for_and_not_flattered():
     assert first.best.action == "listen"
     assert -20 < first.best.q < 19.4  # what always listening and what the best policy earn
     assert later.best.action == "open(door=right_door)"
-
-
-async def test_an_opponent_that_flees_is_tagged():
-    async with engine_of_bundle(BUNDLES / "bench" / "tag") as engine:
-        run = await simulated(engine, 500, planner="despot", goal_probability=0.999, step_limit=90)
-    assert run.ending == "goal"
-    assert run.discounted_return > -16  # random actions end at some -50
 
 
 async def test_a_model_that_cannot_be_enumerated_is_planned_by_rollouts():

@@ -104,7 +104,7 @@ async def test_a_robot_leaves_where_promises_are_not_kept():
 async def test_a_camera_is_wiped_where_the_robot_goes_before_it_reads():
     """A robot without detours reads what it knows, up to the last step, since nothing else costs less."""
     async with engine_of_text(gauges(8)) as engine:
-        run = await simulated(engine, 10_000, seed=302, goal_probability=1, step_limit=60)
+        run = await simulated(engine, 2000, seed=302, goal_probability=1, step_limit=60)
     assert "wipe" in run.actions
     assert run.actions[-1].startswith("report")
     assert len(run.actions) < 60
@@ -114,7 +114,7 @@ async def test_questions_are_asked_of_which_none_pays_alone():
     """A robot that leaves at once returns 0, a rule by hand 6.4."""
     async with engine_of_text(questions(18)) as engine:
         limits = {"goal_probability": 1, "step_limit": 30}
-        runs = [await simulated(engine, 1000, seed=seed, **limits) for seed in range(1, 13)]
+        runs = [await simulated(engine, 1000, seed=seed, **limits) for seed in range(1, 7)]
     assert fmean(run.discounted_return for run in runs) > 2
 
 
