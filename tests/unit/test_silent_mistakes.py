@@ -281,17 +281,11 @@ def test_a_line_that_does_nothing_and_a_field_of_a_number_are_told(lines, told):
     assert sorted(texts) == sorted(told)
 
 
-@pytest.mark.parametrize(
-    ("imported", "told"), [("Far", "Did you mean `Far`?"), ("*", ""), ("FarRequest", "")]
-)
-def test_a_type_called_nearly_as_an_imported_one_is_told(imported, told):
-    declared = (
-        f"local_variable: far\nimports: from: msgs import: {imported}\ntopic: /far\nmessage_type: far\n"
-    )
-    texts = [
-        one.hint for one in found(mapping=f"{MAPPING}\n{declared}code:\nreturn 1\n") if one.code == "AOS110"
-    ]
-    assert texts == [told] * bool(told)
+@pytest.mark.parametrize(("imported", "is_told"), [("Far", True), ("*", False), ("FarRequest", False)])
+def test_a_type_called_nearly_as_an_imported_one_is_told(imported, is_told):
+    far = f"local_variable: far\nimports: from: m import: {imported}\ntopic: /far\nmessage_type: far\ncode:\n"
+    told = [one.hint for one in found(mapping=f"{MAPPING}\n{far}return 1\n") if one.code == "AOS110"]
+    assert told == ["Did you mean `Far`?"] * is_told
 
 
 def test_a_missing_semicolon_before_a_copy_of_the_state_is_told_once():
@@ -333,26 +327,16 @@ def test_a_real_number_that_rounding_makes_miss_a_decimal_is_told():
         ),
         ("if (steps =< 1) __reward = 1;", "9 AOS108 `=<` is no operator of C++. Write `<=`"),
         ("auto f = [steps] { return steps; }; __reward = f();", ""),
-        ("__reward = steps * (7/2);", "9 AOS149 `7/2` is 3 in C++. Write `7.0 / 2`"),
-        ("__reward = 4/2 + (steps ^ 1) + steps/2;", ""),
+        ("__reward = 7/2;", "9 AOS149 `7/2` is 3 in C++. Write `7.0 / 2`"),
+        (
+            "__reward = 4/2 + (steps ^ 1) + (1 < steps < 3);",
+            "9 AOS149 this compares the truth of `1 < steps`",
+        ),
         ("__reward = steps ^ 2;", "9 AOS149 `^` is no power in C++. Write `std::pow(steps, 2)`"),
-        (
-            "if (0 < steps < 3) __reward = 1;",
-            "9 AOS149 this compares the truth of `0 < steps` with `3`. Write `0 < steps && steps < 3`",
-        ),
-        ("if (std::max<int>(steps, 1) > 2 && (1 < steps) < 3) __reward = 1;", ""),
         ("if (steps > 1); __reward = 1;", "9 AOS149 this semicolon ends the `if`. "),
-        ("for (int i = 0; i < 3; i++); { __reward = 1; }", "9 AOS149 this semicolon ends the `for`. "),
-        ("if (steps > 1) ; else __reward = 1; while (__reward++ < 3); __reward = 2;", ""),
-        (
-            "switch (steps) { case 1: __reward = 1; case 2: __reward = 2; }",
-            "9 AOS149 what stands here goes on into the next `case`. Write `break;`",
-        ),
-        (
-            "switch (steps) { case 0: case 1: if (steps) { break; } else return; case 2: { break; } /* */"
-            " case 3: __reward = 1; [[fallthrough]]; default: __reward = 2; }",
-            "",
-        ),
+        ("if (steps > 1) ; else if (std::max<int>(steps, 1) > 2) __reward = 1;", ""),
+        ("switch (steps) { case 1: __reward = 1; case 2: ; }", "9 AOS149 what stands here goes on into "),
+        ("switch (steps) { case 0: case 1: { return; } case 3: ; [[fallthrough]]; default: ; }", ""),
     ],
 )
 def test_code_that_does_nothing_or_loses_a_fraction_is_told(code, told):

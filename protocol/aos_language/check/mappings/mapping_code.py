@@ -29,8 +29,7 @@ from aos_protocol.documents import (
 from aos_protocol.keys import PATH
 from aos_protocol.spelling import nearest, quoted
 
-_VALUES = (ast.Attribute, ast.BinOp, ast.Compare, ast.Name, ast.Subscript)
-_EFFECTS = (ast.Call, ast.NamedExpr)
+_IDLE = (ast.Attribute, ast.BinOp, ast.Compare, ast.Constant, ast.Name)
 
 
 def check_mapping(
@@ -223,10 +222,13 @@ def _check_ends(variable: LocalVariable, code: Snippet, tree: ast.AST, findings:
             findings.warning("AOS121", message, span, hint)
     if variable.name in assigned or (returns and variable.source is LocalSource.TOPIC):
         for part in python_names.nodes_read(tree):
-            idle = part.value if isinstance(part, ast.Expr) else None
-            inner = () if idle is None or not isinstance(idle, _VALUES) else [*ast.walk(idle)]
-            if idle is not None and inner and not any(isinstance(each, _EFFECTS) for each in inner):
-                findings.warning("AOS149", "this line does nothing", place_in(code, idle))
+            if not isinstance(part, ast.Expr) or isinstance(part.value, ast.Constant):
+                continue
+            if all(
+                isinstance(each, (*_IDLE, ast.cmpop, ast.expr_context, ast.operator))
+                for each in ast.walk(part.value)
+            ):
+                findings.warning("AOS149", "this line does nothing", place_in(code, part))
         return
     if variable.source is LocalSource.SERVICE_RESPONSE:
         message = f"this code never assigns `{variable.name}`"
