@@ -2,6 +2,7 @@
 #include "aos/planning/action_values.hpp"
 
 #include "check.hpp"
+#include "numbers/exact.hpp"
 
 namespace action_values_tests {
 
@@ -17,6 +18,16 @@ TEST("A value is in the middle of its own bounds, and none is above that of the 
 TEST("An exact value that few missions were played for says so, and one with enough of them says nothing") {
   EXPECT_EQUAL(aos::unplayed_text(2), std::string{"the error is that of 2 of 30 missions that plan anew"});
   EXPECT(aos::unplayed_text(30).empty());
+}
+
+TEST("An action that earns later is taken where it gains something, and not for next to nothing") {
+  const auto taken = [](double sooner, bool is_barred) {
+    const aos::List<aos::ExactValue> values{{10, 10}, {sooner, 0}};
+    return aos::soonest_of_best(values, [&](std::size_t action) { return is_barred && action == 1; });
+  };
+  EXPECT_EQUAL(taken(10 - 1e-6, false), 1u);
+  EXPECT_EQUAL(taken(10 - 1e-3, false), 0u);
+  EXPECT_EQUAL(taken(10 - 1e-6, true), 0u);
 }
 
 }

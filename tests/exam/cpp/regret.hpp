@@ -256,7 +256,8 @@ class Regret {
   }
 
   static std::uint64_t mixed(std::uint64_t seed, std::uint64_t mission, std::uint64_t use) {
-    return aos::mixed(aos::mixed(seed, mission), use);
+    // The seed by itself first: neighbouring seeds would else have worlds in common.
+    return aos::mixed(aos::mixed(aos::mixed(0, seed), mission), use);
   }
   static std::uint32_t drawn(const Mass& belief, double uniform) {
     for (const auto& [state, weight] : belief) {

@@ -25,6 +25,21 @@ double normalise(Weighted& belief) {
 
 }  // namespace
 
+std::size_t soonest_of_best(const List<ExactValue>& values, FunctionRef<bool(std::size_t)> is_barred) {
+  constexpr double nearly = 1e-6;  // of the value
+  const ExactValue* best = nullptr;
+  const auto take = [&](auto&& is_better) {
+    for (std::size_t action = 0; action < values.size(); ++action) {
+      if (!is_barred(action) && is_better(values[action])) best = &values[action];
+    }
+  };
+  take([&](const ExactValue& value) { return best == nullptr || value.is_better_than(*best); });
+  if (best == nullptr) return 0;
+  const double least = best->value - nearly * std::abs(best->value);
+  take([&](const ExactValue& value) { return value.value >= least && value.is_sooner_than(*best); });
+  return static_cast<std::size_t>(best - values.data());
+}
+
 List<ExactValue> ExactEvaluation::action_values(const Weighted& belief, int horizon) {
   List<ExactValue> values(rows_.actions);
   if (horizon <= 0 || belief.empty()) return values;
@@ -138,7 +153,7 @@ double ExactEvaluation::loss_of_mission(Weighted belief, std::size_t action, int
     if (next.empty()) break;
     belief = std::move(next);
     discount *= rows_.discount;
-    action = best_action(belief, horizon);
+    action = soonest_of_best(action_values(belief, horizon), [](std::size_t) { return false; });
     loss += discount * (best_value(belief, left - 1).value - action_value(belief, action, left - 1).value);
   }
   return loss;

@@ -11,6 +11,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "aos/base/function_ref.hpp"
 #include "aos/draws/random.hpp"
 #include "numbers/belief_key.hpp"
 #include "numbers/observable_values.hpp"
@@ -32,11 +33,17 @@ struct ExactValue {
 
   // Whether this value is higher than another one, or as high and earned sooner.
   bool is_better_than(const ExactValue& other) const {
-    constexpr double rounding = 1e-12;
     const double tie = rounding * (std::abs(value) + std::abs(other.value));
-    return value > other.value + tie || (value >= other.value - tie && growth < other.growth - rounding * std::abs(growth));
+    return value > other.value + tie || (value >= other.value - tie && is_sooner_than(other));
   }
+  bool is_sooner_than(const ExactValue& other) const { return growth < other.growth - rounding * std::abs(growth); }
+
+  static constexpr double rounding = 1e-12;
 };
+
+// The action to take of those that are not barred, 0 if all are: of those that are nearly as good as the best, the one that earns
+// soonest. A free look gains a little each time, and would put an end off for ever.
+std::size_t soonest_of_best(const List<ExactValue>& values, FunctionRef<bool(std::size_t)> is_barred);
 
 // Numbers of states with weights, by ascending numbers.
 using Weighted = List<std::pair<std::uint32_t, double>>;

@@ -88,12 +88,7 @@ class ExactSearch final : public Planner<Model> {
   // How many simulations the last try has taken so far.
   std::uint64_t simulations() const { return Budget::simulations_of(evaluation_->work(), horizon_); }
   int best(const BarredActions& barred) const {
-    const ExactValue* best = nullptr;
-    for (const ExactValue& value : values_) {
-      if (barred.contains(static_cast<std::size_t>(&value - values_.data()))) continue;
-      if (best == nullptr || value.is_better_than(*best)) best = &value;
-    }
-    return best == nullptr ? 0 : static_cast<int>(best - values_.data());
+    return static_cast<int>(soonest_of_best(values_, [&](std::size_t action) { return barred.contains(action); }));
   }
 
   static ExactLimits limits_of(Budget budget, int horizon) {
