@@ -116,5 +116,6 @@ async def test_what_is_not_there_is_told_with_the_nearest(aos: Aos):
         (("show", "armadilo"), "Did you mean `armadillo`?"),
         (("rm", "armadillo", "pik"), "Did you mean `pick`?"),
         (("rm", "armadilo"), "no project armadilo"),
+        (("rm", "pick"), "It is a skill of armadillo: `aos bundle rm armadillo pick`"),
     ):
         assert told in str((await aos("bundle", *arguments)).exception)

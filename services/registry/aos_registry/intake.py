@@ -78,6 +78,9 @@ class Intake:
         known = self.revisions.get(project)
         if current is None:
             hint = did_you_mean(project, self.revisions) or f"It holds {quoted(sorted(self.revisions))}"
+            for name, each in self.revisions.items():
+                if project in (item.name for item in each.project.skills):
+                    hint = f"It is a skill of {name}: `aos bundle rm {name} {project}`"
             raise DocumentError(f"the catalogue holds no project {project}", code="AOS110", hint=hint)
         names = [item.name for item in known.project.skills] if known is not None else []
         if not skill:

@@ -1,7 +1,7 @@
 // The decision of a step in one sentence, and what was expected and seen in another.
 import { html } from "./ui.js";
 import { chance, isNumber, number, percent, plain, plusMinus, seconds, signed, sized } from "./format.js";
-import { at, progress, record } from "./store.js";
+import { at, isGone, progress, record } from "./store.js";
 import { isAsked } from "./timeline.js";
 
 export function Sentence() {
@@ -35,6 +35,7 @@ function came(step) {
   const likely = Object.entries(step.predicted ?? {}).filter(([response]) => response !== "…").sort((a, b) => b[1] - a[1]).slice(0, 3);
   const expected = likely.map(([response, share], i) => html`${i ? ", " : ""}<span class="response">${response}</span> ${percent(share)}`);
   if (!step.status) {
+    if (isGone.value) return html`Expected ${expected}. How it ended is not known.`;
     const how = progress.value;
     return html`Expected ${expected}. ${how && how.id?.step === step.step && (how.progress || how.text) ? `It is running${how.progress ? `, ${percent(how.progress)}` : ""}${how.text ? `: ${how.text}` : ""}.` : html`<span class="waiting">It is running.</span>`}`;
   }

@@ -1,7 +1,7 @@
 // All steps as a table, and one step in full: parameters, local variables, times.
 import { Card, html, useEffect, useRef, useState } from "./ui.js";
 import { briefAction, chance, plain, seconds, signed } from "./format.js";
-import { at, index, record, selectStep, steps } from "./store.js";
+import { at, index, isGone, record, selectStep, steps } from "./store.js";
 import { hasFailed, isSurprising } from "./timeline.js";
 
 export const Steps = () => html`<div class="columns">
@@ -38,7 +38,7 @@ const Row = ({ step, isNow }) => html`<tr aria-selected=${isNow} onClick=${() =>
   <td><button class="row-step" aria-label=${`Step ${step.step}`}>${step.step}</button></td>
   <td class="action" title=${step.action}><${Name} of=${briefAction(step.action)} /></td>
   <td class="num wide-only">${signed(step.value)}</td>
-  <td>${step.status ? (hasFailed(step) ? html`<span class="bad">✕ ${step.status.replace("_", " ")}</span>` : html`<${Name} of=${step.seen} />`) : html`<span class="muted">running</span>`}</td>
+  <td>${step.status ? (hasFailed(step) ? html`<span class="bad">✕ ${step.status.replace("_", " ")}</span>` : html`<${Name} of=${step.seen} />`) : html`<span class="muted">${isGone.value ? "not known" : "running"}</span>`}</td>
   <td class="num wide-only">${step.status ? chance(step.expected) : ""}</td>
   <td class="num">${step.status ? html`${isSurprising(step) ? html`<span class="mark" aria-label="surprising">▲ </span>` : ""}${step.impossible ? "∞" : plain(step.surprise)}` : ""}</td>
   <td class="num wide-only">${chance((step.endings_after ?? step.endings)?.goal)}</td>

@@ -118,6 +118,7 @@ export async function open(name, { again = false } = {}) {
     if (own !== name) return go(addressOf(own, route.value.view, route.value.step), { replace: true });
     batch(() => {
       records.clear();
+      progress.value = null;
       mission.value = view;
       state.value = view.state ?? null;
       draws.value = trace.draws;
@@ -126,6 +127,7 @@ export async function open(name, { again = false } = {}) {
       problem.value = null;
       loadedIn.value = performance.now() - begun;
     });
+    if (again && at.value) loadRecord(at.value.step);
     listen(name, trace.next);
     loadPictures(name);
   } catch (error) {

@@ -21,8 +21,8 @@ export const Findings = ({ problem }) =>
       ${problem.hint && html`<p>${problem.hint}</p>`}
       ${problem.diagnostics?.length > 0 && html`<ul class="findings">
         ${problem.diagnostics.slice(0, 50).map((found) => html`<li>
-          <span class="code">${found.code}</span> <span class="place">${place(found.span)}</span> ${found.message}
-          ${found.hint && html`<p class="hint">${found.hint}</p>`}
+          <span class="code">${found.code}</span> <span class="place">${place(found.span)}</span> ${!problem.message?.includes(found.message) && found.message}
+          ${found.hint && found.hint !== problem.hint && html`<p class="hint">${found.hint}</p>`}
           ${found.excerpt && html`<pre tabindex="0">${found.excerpt}</pre>`}
         </li>`)}
       </ul>`}
