@@ -55,6 +55,7 @@ def test_plain_code_stands_as_it_is(code):
         ("b = AOSUtils::Bernoulli(0.1);", "b = AOSUtils.Bernoulli(0.1);"),
         ("n = state__.tBoxObjects.size();", "n = state__.tBoxObjects().size();"),
         ("state.tBoxObjects[i]->x;", "state.tBoxObjects()[i]->x;"),
+        ("std::vector<bool>::reference b = state__.b[f];", "auto&& b = state__.b[f];"),
         ("vector<int>& row = state__.row;", "auto& row = state__.row;"),
         ("auto f = [&](string& s, int i) { s += i; };", "auto f = [&](auto& s, int i) { s += i; };"),
         ("vector<int> a{1, eRed}; n = a[0];", "static const vector<int> a{1, eRed}; n = aos::at(a, 0);"),

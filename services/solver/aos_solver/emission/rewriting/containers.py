@@ -22,6 +22,7 @@ _OF_STATE = frozenset({"erase", "erase_if", "getline", "swap"})
 _ITERATOR = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map|set|string)\b[^\n;(){}]*::\s*(?:const_)?(?:reverse_)?iterator)\s+$"
 )
+_BIT = re.compile(r"((?:std\s*::\s*)?vector\s*<\s*bool\s*>\s*::\s*reference)\s+$")
 _VECTOR = re.compile(r"(?:^|[;{}])\s*((const\s+)?(?:std\s*::\s*)?vector\s*<[^;(){}]*>\s*)$")
 _WEIGHTS = re.compile(r"\s*(?:std\s*::\s*)?vector\s*<\s*double\s*>\s*(?=\{)")
 _READING_METHODS = frozenset({"at", "back", "cbegin", "cend", "empty", "front", "size"})
@@ -35,6 +36,7 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
     """Replacements (start, end, text) by offsets; `values` are the names of constants.
 
     - `vector<int>::iterator at = state__.row.begin();` becomes `auto at`, also from `auto& row = state__.row`
+    - `vector<bool>::reference bit = state__.bits[1];` becomes `auto&& bit`
     - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`
     - `vector<int>* row = &state__.row;` becomes `auto* row`
     - `std::function<void(vector<int>&)> grow = [](...) {...}` becomes `auto grow`
@@ -62,7 +64,9 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
             yield call.extent.start + len(call.name[0]), call.arguments[0].start, ", "
     for declaration in cpp.declarations:
         before = cpp.code[: declaration.extent.start]
-        if declaration.type.endswith("iterator") and _leads_to_state(cpp, declaration):
+        if declaration.type.endswith("reference") and (bit := _BIT.search(before)) is not None:
+            yield bit.start(1), bit.end(1), "auto&&"
+        elif declaration.type.endswith("iterator") and _leads_to_state(cpp, declaration):
             if (iterator := _ITERATOR.search(before)) is not None:
                 yield iterator.start(1), iterator.end(1), "auto"
         elif declaration.type.endswith("&") and not declaration.type.startswith("const"):
