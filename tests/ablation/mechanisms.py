@@ -34,6 +34,7 @@ _OPTIONS = (
     "past_ends",
     "moved_by_ways",
     "reported_worlds",
+    "idle_income",
 )
 _SAVINGS = ("savings", "saving_lookahead", "saving_rollouts")
 _SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree")

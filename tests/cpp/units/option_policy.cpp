@@ -118,6 +118,26 @@ TEST("A scan counts for the tests that it makes cheaper, and what is of no use c
   EXPECT(best - estimates.begin() < scans);
 }
 
+// A machine earns at each step, and all that changes it costs more.
+TEST("What a step earns that changes nothing is told apart from what ways earn") {
+  for (const double idle : {0.5, 0.0}) {
+    Problem problem = units::world(2, 5, 0.95);
+    problem.starts = {{0, 0.5}, {1, 0.5}};
+    for (std::uint32_t state = 0; state < 2; ++state) {
+      for (int action = 0; action < 5; ++action) {
+        const bool is_idle = action < 2;
+        units::row(problem, state, action) = {{1.0, is_idle ? state : 1 - state, 0, is_idle ? idle : action == 2 ? 1.0 : -1.0}};
+      }
+    }
+    TableModel::take(problem);
+    aos::Sampler random{1};
+    aos::OptionPolicy<TableModel> policy;
+    EXPECT(policy.prepare(Belief::initial(random), 1e5, 0, random).empty());
+    EXPECT(policy.earns_idle() == (idle > 0));
+    EXPECT(!policy.earns_anyway());
+  }
+}
+
 // Two jobs, each done by its action, which earns 20; the mission ends when both are done. A state has a bit for each.
 TEST("A reward that an action has earned does not count again where the mission may end with it") {
   Problem problem = units::world(4, 2, 0.95);

@@ -126,6 +126,8 @@ class OptionPolicy {
   bool knows_ways() const { return !library_.options().empty(); }
   // Whether rewards come by themselves, so that a way to one tells nothing.
   bool earns_anyway() const { return changes_.earns_anyway(); }
+  // Whether each search for ways stops at a step that changes nothing.
+  bool earns_idle() const { return switches::idle_income && changes_.earns_idle(); }
   // The steps of the model that were taken since `prepare` began.
   double taken() const { return taken_; }
   // What decided, for a plan's `why`.

@@ -40,7 +40,7 @@ class OptionsPlanner final : public Planner<Model> {
     const std::string obstacle = look(question, is_short && !finds_nothing_, Sampler{Sampler{random}.bits()}, choosing);
     if (!obstacle.empty()) choosing.why += "; " + obstacle;
     // Where no way at all is known, the next look is put off, each time for longer.
-    const bool is_in_vain = !policy_.knows_ways() || policy_.earns_anyway();
+    const bool is_in_vain = !policy_.knows_ways() || policy_.earns_anyway() || earns_idle_.value_or(false);
     if (is_in_vain) looks_.fail();
     else looks_.succeed();
     finds_nothing_ = is_in_vain && (!is_short || finds_nothing_.value_or(true));
@@ -71,6 +71,7 @@ class OptionsPlanner final : public Planner<Model> {
     looks_ = Backoff{};
     finds_nothing_.reset();
     is_neglect_dear_.reset();
+    earns_idle_.reset();
   }
 
  private:
@@ -90,7 +91,9 @@ class OptionsPlanner final : public Planner<Model> {
     if (!obstacle.empty() || question.is_by_name) return obstacle;
     const ForgottenTexts forgotten;
     if (!is_neglect_dear_) is_neglect_dear_ = policy_.is_neglect_dear(question.horizon, random);
-    return *is_neglect_dear_ ? "what is neglected costs more than ways to rewards earn" : "";
+    if (*is_neglect_dear_) return "what is neglected costs more than ways to rewards earn";
+    if (!earns_idle_) earns_idle_ = policy_.earns_idle();
+    return *earns_idle_ ? "a step that changes nothing earns something" : "";
   }
 
   // A robot that looks for ever for what pays for itself leaves, or waits, once promises have lost what it could still gain.
@@ -119,7 +122,9 @@ class OptionsPlanner final : public Planner<Model> {
   Backoff looks_;
   bool has_looked_ = false;
   std::optional<bool> finds_nothing_;  // by the looks of a mission
-  std::optional<bool> is_neglect_dear_;  // by the first decision of a mission that has ways
+  // By the first decision of a mission that has ways:
+  std::optional<bool> is_neglect_dear_;
+  std::optional<bool> earns_idle_;
 };
 
 }

@@ -38,21 +38,24 @@ class OwnChanges {
     start_.resize(cells.size());
     after_.resize(actions * cells.size());
     ends_.resize(actions);
-    double earning = 0;
+    List<std::size_t> earning(actions);
     for (const State& state : states) {
       cells.write(state, start_.data());
       const std::uint64_t seed = random.bits();
       for (std::size_t a = 0; a < actions; ++a) {
         State next = state;
         Sampler same{seed};
-        earning += Model::step(next, a, same).reward > 0 ? 1 : 0;
+        earning[a] += Model::step(next, a, same).reward > 0 ? 1 : 0;
         cells.write(next, &after_[a * cells.size()]);
         ends_[a] = Model::ending(next) != Ending::running ? 1 : 0;
       }
       compare(cells.size());
     }
     steps -= actions * states.size();
-    earns_anyway_ = earning >= most_actions * (actions * states.size());
+    const auto is_most = [](std::size_t count, std::size_t all) { return static_cast<double>(count) >= most_actions * static_cast<double>(all); };
+    earns_anyway_ = is_most(std::accumulate(earning.begin(), earning.end(), std::size_t{0}), actions * states.size());
+    earns_idle_ = false;
+    for (std::size_t a = 0; a < actions; ++a) earns_idle_ |= !moves_[a] && is_most(earning[a], states.size());
   }
 
   // Whether the action changes any of the states, or ends the mission.
@@ -61,6 +64,8 @@ class OwnChanges {
   bool leaves_tests() const { return std::ranges::count(moves_, false) > 0; }
   // Whether the next step earns something whatever the robot does.
   bool earns_anyway() const { return earns_anyway_; }
+  // Whether an action that changes nothing earns something in the next step.
+  bool earns_idle() const { return earns_idle_; }
   // Whether a variable changes by itself, and no action changes it. Of one that was found after `measure` this is not known.
   bool is_worlds(std::size_t variable) const { return variable < is_worlds_.size() && is_worlds_[variable] && !is_changed_[variable]; }
 
@@ -96,6 +101,7 @@ class OwnChanges {
   }
 
   bool earns_anyway_ = false;
+  bool earns_idle_ = false;
   std::vector<bool> moves_;       // by action
   std::vector<bool> is_changed_;  // by variable
   std::vector<bool> is_worlds_;   // by variable
