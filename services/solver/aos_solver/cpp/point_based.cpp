@@ -116,12 +116,18 @@ List<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::size_t steps, 
   });
 }
 
-std::optional<PolicyValue> OnlineSarsop::best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over, std::uint64_t& work, bool decides_anew) {
+std::optional<PolicyValue> OnlineSarsop::best_policy(std::size_t steps, const Limit& usual, const Limit& most, std::uint64_t& work, bool decides_anew) {
   Sarsop& sarsop = solver_->sarsop;
   if (!sarsop.has_start() || (!decides_anew && (!switches::simple_policies || solver_->is_nearly_closed()))) return std::nullopt;
-  auto is_late = solver_->seldom(is_over);
-  return solver_->played(max_work, is_late, work, [&](Asked ends, Uniform uniform) { return sarsop.best_policy(steps, decides_anew, ends, is_late, uniform); });
+  auto is_late = solver_->seldom(usual.is_over), is_last = solver_->seldom(most.is_over);
+  const std::uint64_t before = sarsop.graph().work();
+  const auto is_over = [&] { return is_late() || (usual.work > 0 && sarsop.graph().work() - before >= usual.work); };
+  return solver_->played(most.work, is_last, work, [&](Asked ends, Uniform uniform) {
+    return sarsop.best_policy(steps, decides_anew, {is_over, is_late}, {ends, is_last}, uniform);
+  });
 }
+
+void OnlineSarsop::open_actions(const IsOver& is_late) { solver_->sarsop.open_actions(is_late); }
 
 List<ActionBounds> OnlineSarsop::action_bounds() {
   List<ActionBounds> bounds = solver_->sarsop.action_bounds();

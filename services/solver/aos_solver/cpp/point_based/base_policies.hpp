@@ -20,36 +20,46 @@ class BasePolicies {
   BasePolicies(const FlatModel& model, const Regions& regions, BeliefGraph& graph)
       : model_(model), regions_(regions), graph_(graph) {
     posterior_.reserve(regions.largest());
-    doubts_.resize(regions.all.size() * model.actions);
+    sensors_.resize(regions.all.size() * model.actions);
   }
 
-  // The policy that returns most from a node's belief over `steps` decisions, and what it returns; none if too few missions
-  // were played when `is_over()` came. `is_late()` also breaks off the last one. `uniform()` draws. Where it `decides_anew`, each
-  // decision has the whole horizon to go. Else it must return more than the lower bound by a standard error, or by anything if
-  // it was found last.
-  [[gnu::optimize("O3")]] std::optional<PolicyValue> best(const Node& node, std::size_t steps, bool decides_anew, Asked is_over, Asked is_late, Uniform uniform) {
+  // The policy that returns most from a node's belief over `steps` decisions, and what it returns; none if no mission was
+  // played. The first policy has the fewest missions that tell a mean until the `most` ends, all others end at the `usual` ones.
+  // `uniform()` draws. Where it `decides_anew`, each decision has the whole horizon to go. Else it must return more than the lower bound by a
+  // standard error, or by anything if it was found last.
+  [[gnu::optimize("O3")]] std::optional<PolicyValue> best(const Node& node, std::size_t steps, bool decides_anew, const Ends& usual, const Ends& most, Uniform uniform) {
     decides_anew_ = decides_anew;
     const double worth = std::max(node.upper - node.lower, 0.0);  // of knowing all
     List<Candidate> candidates;
-    for (const Policy& policy : policies_) candidates.push_back({&policy, policy.weight * worth});
-    std::size_t missions = first_missions;
+    const Prospects now = prospects(node.belief, node.region, node.left, /*is_to_tell=*/true, most.late);
+    for (const Policy& policy : policies_) {
+      Candidate& added = candidates.emplace_back(&policy, policy.weight * worth);
+      added.first = choice(now, added);
+    }
+    // Where few missions fit, the policy that decided last is compared first.
+    std::ranges::stable_partition(candidates, [this](const Candidate& candidate) { return candidate.policy == last_; });
+    for (Candidate& candidate : candidates) {
+      const Ends& ends = &candidate == &candidates.front() ? most : usual;
+      for (std::size_t i = 0; i < fewest_missions && !ends.over(); ++i) play(node, candidate, steps, ends.late, uniform);
+    }
+    std::size_t missions = first_missions - fewest_missions;
     while (true) {
       for (std::size_t i = 0; i < missions; ++i) {
         for (Candidate& candidate : candidates) {
-          if (!is_over()) play(node, candidate, steps, is_late, uniform);
+          if (!usual.over()) play(node, candidate, steps, usual.late, uniform);
         }
       }
       std::stable_sort(candidates.begin(), candidates.end(),
                        [](const Candidate& one, const Candidate& other) { return mean(one) > mean(other); });
-      if (is_over() || missions == most_missions) {
-        return decides_anew ? value_of(candidates.front()) : decider(candidates.front(), node.lower);
+      if (usual.over() || missions == most_missions) {
+        return decides_anew ? value_of(candidates.front()) : decider(candidates, node.lower, worth);
       }
       const std::size_t half = candidates.size() / 2;
       std::size_t place = 0;
       erase_if(candidates, [&](const Candidate& candidate) {
         return place++ >= half && (decides_anew || candidate.policy != last_);
       });
-      missions = half > 1 ? 2 * missions : most_missions;
+      missions = half > 1 ? 2 * first_missions : most_missions;
       if (half > 1) continue;
       // The mean of the best of several is too high. What the last ones return is found anew.
       for (Candidate& candidate : candidates) candidate.returns = {};
@@ -74,23 +84,30 @@ class BasePolicies {
     std::uint32_t first = 0;  // its action at the belief where missions begin
   };
 
-  static constexpr Policy policies_[] = {{1, 0}, {1, 0.1}, {0.9, 0.03}, {0.9, 0.1}, {0.9, 0.3}, {0.9, 1}};
+  static constexpr Policy policies_[] = {{0.9, 0.1}, {0.9, 0.3}, {0.9, 0.03}, {1, 0.1}, {0.9, 1}, {1, 0}};
 
   static double mean(const Candidate& candidate) {
     return candidate.returns.count() > 0 ? candidate.returns.mean() : -std::numeric_limits<double>::infinity();
   }
-  static std::optional<PolicyValue> value_of(const Candidate& candidate) {
+  // `fewest` missions tell how far returns lie apart.
+  static std::optional<PolicyValue> value_of(const Candidate& candidate, std::size_t fewest = fewest_missions) {
     const Returns& returns = candidate.returns;
-    if (returns.count() < static_cast<double>(fewest_missions)) return std::nullopt;
+    if (returns.count() < static_cast<double>(fewest)) return std::nullopt;
     return PolicyValue{candidate.first, returns.mean(), returns.within / returns.count(), returns.error()};
   }
 
-  // As `value_of`, where it decides.
-  std::optional<PolicyValue> decider(const Candidate& candidate, double least) {
-    std::optional<PolicyValue> found = value_of(candidate);
-    if (found && found->value - (candidate.policy == last_ ? 0 : found->standard_error) <= least) found.reset();
-    last_ = found ? candidate.policy : nullptr;
-    return found;
+  // The value of the first candidate that decides. The returns of too few missions may lie as far apart as the bounds.
+  std::optional<PolicyValue> decider(const List<Candidate>& candidates, double least, double worth) {
+    const Policy* const before = std::exchange(last_, nullptr);
+    for (const Candidate& candidate : candidates) {
+      std::optional<PolicyValue> found = value_of(candidate, 1);
+      if (!found) continue;
+      if (!value_of(candidate)) found->standard_error = worth / 2 / std::sqrt(candidate.returns.count());
+      if (found->value - (candidate.policy == before ? 0 : found->standard_error) <= least) continue;
+      last_ = candidate.policy;
+      return found;
+    }
+    return std::nullopt;
   }
 
   // Plays a mission, which counts if it ends before `is_late()`. What comes after its steps counts as the lower bound there, where
@@ -103,9 +120,8 @@ class BasePolicies {
     for (std::size_t step = 0; step < steps; ++step) {
       const std::uint32_t passed = graph_.is_endless() || decides_anew_ ? 0 : static_cast<std::uint32_t>(step);
       const std::uint32_t left = start.left - passed;
-      if (step > 0 || candidate.returns.count() == 0) action = choice(belief, region, left, candidate, is_late);
+      if (step > 0) action = choice(prospects(belief, region, left, candidate.weight > 0, is_late), candidate);
       if (is_late()) return;
-      if (step == 0) candidate.first = action;
       const Move& move = regions_.all[region].moves[action];
       earned += discount * expected(move.rewards, belief);
       discount *= model_.discount;
@@ -132,17 +148,31 @@ class BasePolicies {
     return nullptr;
   }
 
-  // The action that a policy takes; any one if `is_late()` comes first.
-  [[gnu::optimize("O3")]] std::uint32_t choice(const Belief& belief, std::uint32_t region, std::uint32_t left, const Candidate& candidate, Asked is_late) {
-    const List<double> informed = graph_.informed_values(region, left, belief);
+  // What is told of each action at a belief.
+  struct Prospects {
+    List<double> rewards;
+    List<double> informed;     // values if more is known from then on
+    List<double> information;  // of the next observation; empty if nobody asks
+  };
+
+  // Any values if `is_late()` comes first.
+  [[gnu::optimize("O3")]] Prospects prospects(const Belief& belief, std::uint32_t region, std::uint32_t left, bool is_to_tell, Asked is_late) {
+    Prospects found{{}, graph_.informed_values(region, left, belief), {}};
     graph_.count_work(model_.actions * belief.size());
+    for (const Move& move : regions_.all[region].moves) found.rewards.push_back(move.sure_reward ? *move.sure_reward : expected(move.rewards, belief));
+    if (!is_to_tell) return found;
+    found.information.assign(model_.actions, 0.0);
+    for (std::uint32_t action = 0; action < model_.actions && !is_late(); ++action) found.information[action] = information(belief, region, action);
+    return found;
+  }
+
+  // The action that a policy takes.
+  std::uint32_t choice(const Prospects& of, const Candidate& candidate) const {
     std::uint32_t best = 0;
     double highest = -std::numeric_limits<double>::infinity();
-    for (std::uint32_t action = 0; action < model_.actions && !is_late(); ++action) {
-      const Move& move = regions_.all[region].moves[action];
-      const double reward = expected(move.rewards, belief);
-      double merit = reward + candidate.policy->share * (informed[action] - reward);
-      if (candidate.weight > 0) merit += candidate.weight * information(belief, region, action);
+    for (std::uint32_t action = 0; action < model_.actions; ++action) {
+      double merit = of.rewards[action] + candidate.policy->share * (of.informed[action] - of.rewards[action]);
+      if (candidate.weight > 0) merit += candidate.weight * of.information[action];
       if (merit <= highest) continue;
       highest = merit;
       best = action;
@@ -150,31 +180,79 @@ class BasePolicies {
     return best;
   }
 
+  // What is observed after an action, by state of the region.
+  struct Sensor {
+    List<double> doubts;      // entropies
+    List<List<double>> odds;  // by branch, where these are few: probabilities. Without the last one, where they sum to 1.
+  };
+
+  // Values by state, or only one if it is the same in all states.
+  static void shorten(List<double>& values) {
+    if (std::ranges::all_of(values, [&](double value) { return value == values.front(); })) values.resize(1);
+  }
+  static double expected_of(const List<double>& values, const Belief& belief) {
+    return values.size() == 1 ? values.front() : expected(values, belief);
+  }
+
   // The mutual information between the state and what is observed after an action, in nats.
   [[gnu::optimize("O3")]] double information(const Belief& belief, std::uint32_t region, std::uint32_t action) {
     const Move& move = regions_.all[region].moves[action];
     if (move.observation_branches.size() < 2 || belief.size() < 2) return 0;
-    graph_.count_work(posterior_.predict(belief, move));
+    const Sensor& sensor = sensor_of(region, action);
     double entropy = 0;
-    for (const ObservationBranch& branch : move.observation_branches) {
-      graph_.count_work(branch.successors.size());
-      entropy += share_of_entropy(posterior_.probability_of(branch));
+    if (sensor.odds.empty()) {
+      graph_.count_work(posterior_.predict(belief, move));
+      for (const ObservationBranch& branch : move.observation_branches) {
+        graph_.count_work(branch.successors.size());
+        entropy += share_of_entropy(posterior_.probability_of(branch));
+      }
+    } else {
+      double rest = 1;
+      for (const List<double>& odds : sensor.odds) {
+        const double share = expected_of(odds, belief);
+        entropy += share_of_entropy(share);
+        rest -= share;
+      }
+      graph_.count_work(sensor.odds.size() * belief.size());
+      if (sensor.odds.size() < move.observation_branches.size()) entropy += share_of_entropy(std::max(rest, 0.0));
     }
-    return std::max(entropy - expected(doubts(region, action), belief), 0.0);
+    return std::max(entropy - expected_of(sensor.doubts, belief), 0.0);
   }
 
-  // By state of the region: the entropy of what is observed after an action.
-  [[gnu::optimize("O3")]] const List<double>& doubts(std::uint32_t region, std::uint32_t action) {
-    List<double>& known = doubts_[region * model_.actions + action];
-    if (!known.empty()) return known;
-    const Move& move = regions_.all[region].moves[action];
-    List<List<std::pair<std::size_t, double>>> observed(move.targets);  // by target: branches, and their probabilities
-    for (std::size_t number = 0; number < move.observation_branches.size(); ++number) {
-      for (const auto& successor : move.observation_branches[number].successors) observed[successor.target].emplace_back(number, successor.probability);
+  // A branch, and its probability where it is known to what the action leads.
+  struct Observed {
+    std::size_t number;
+    double probability;
+  };
+
+  static Rows<Observed> observed_at_targets(const Move& move) {
+    Rows<Observed> observed;
+    observed.first.assign(move.targets + 1, 0);
+    for (const ObservationBranch& branch : move.observation_branches) {
+      for (const auto& successor : branch.successors) ++observed.first[successor.target + 1];
     }
+    std::partial_sum(observed.first.begin(), observed.first.end(), observed.first.begin());
+    observed.elements.resize(observed.first.back());
+    auto places = observed.first;
+    for (std::size_t number = 0; number < move.observation_branches.size(); ++number) {
+      for (const auto& successor : move.observation_branches[number].successors) {
+        observed.elements[places[successor.target]++] = {number, successor.probability};
+      }
+    }
+    return observed;
+  }
+
+  [[gnu::optimize("O3")]] const Sensor& sensor_of(std::uint32_t region, std::uint32_t action) {
+    Sensor& known = sensors_[region * model_.actions + action];
+    if (!known.doubts.empty()) return known;
+    const Move& move = regions_.all[region].moves[action];
+    const std::size_t states = regions_.all[region].states.size();
+    const Rows<Observed> observed = observed_at_targets(move);
     List<double> odds(move.observation_branches.size(), 0.0);
+    if (odds.size() <= few_branches) known.odds.assign(odds.size(), List<double>(states, 0.0));
     List<std::size_t> possible;
-    for (std::uint32_t state = 0; state < regions_.all[region].states.size(); ++state) {
+    bool is_whole = true;
+    for (std::uint32_t state = 0; state < states; ++state) {
       possible.clear();
       for (const Move::Flow& flow : move.flows[state]) {
         for (const auto& [number, probability] : observed[flow.target]) {
@@ -182,11 +260,19 @@ class BasePolicies {
           possible.push_back(number);
         }
       }
-      double entropy = 0;
-      for (const std::size_t number : possible) entropy += share_of_entropy(std::exchange(odds[number], 0.0));
+      double entropy = 0, whole = 0;
+      for (const std::size_t number : possible) {
+        const double share = std::exchange(odds[number], 0.0);
+        entropy += share_of_entropy(share);
+        whole += share;
+        if (!known.odds.empty()) known.odds[number][state] += share;
+      }
       graph_.count_work(possible.size());
-      known.push_back(entropy);
+      known.doubts.push_back(entropy);
+      is_whole = is_whole && std::abs(whole - 1) < 1e-9;
     }
+    if (is_whole && !known.odds.empty()) known.odds.pop_back();
+    shorten(known.doubts);
     graph_.count_work(move.targets);
     return known;
   }
@@ -197,7 +283,7 @@ class BasePolicies {
   Posterior posterior_;
   bool decides_anew_ = false;
   const Policy* last_ = nullptr;  // that decided, if one did at the last search
-  List<List<double>> doubts_;  // [region * actions + action]
+  List<Sensor> sensors_;  // [region * actions + action]; those that were asked for
 };
 
 }

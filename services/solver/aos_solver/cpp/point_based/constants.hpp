@@ -43,6 +43,8 @@ inline constexpr double nearly_closed_share = 0.05;
 inline constexpr std::size_t fewest_missions = 4;
 inline constexpr std::size_t first_missions = 8;
 inline constexpr std::size_t most_missions = 64;
+// Up to so many observations of an action the probabilities of each are kept by state: sums over them are fast.
+inline constexpr std::size_t few_branches = 8;
 
 // --- limits
 

@@ -13,6 +13,11 @@
 namespace aos::point_based {
 
 using Asked = FunctionRef<bool()>;      // now and then: whether the work is to end
+// Ends of missions: no further one begins once they are over, and the one that is played breaks off where it is late.
+struct Ends {
+  Asked over;
+  Asked late;
+};
 using Uniform = FunctionRef<double()>;  // draws a number in [0, 1)
 
 // The bounds of an action's value, how many trials began with it, and how probable it is at most that more can be earned after it.
@@ -50,6 +55,10 @@ struct CrossedBounds : std::logic_error {
 class OnlineSarsop {
  public:
   using IsOver = std::function<bool()>;
+  struct Limit {
+    std::uint64_t work;  // 0: no limit
+    const IsOver& is_over;
+  };
 
   // Computes the initial bounds. Without a horizon the discount must be below 1. Throws std::length_error if
   // there are too many states for the horizon.
@@ -77,11 +86,16 @@ class OnlineSarsop {
                                   std::uint64_t& work);
 
   // The best of some simple policies from the belief, by missions of `steps` decisions; none where the bounds have nearly met,
-  // where too few missions fit the work, and where it does not return more than the lower bound by a standard error. The one that was
+  // where no mission fits the work, and where it does not return more than the lower bound by a standard error. The one that was
   // found last needs no standard error. Where it `decides_anew`, each decision has the whole horizon to go, and bounds do not matter.
-  // Adds the work to `work`.
-  std::optional<PolicyValue> best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over, std::uint64_t& work, bool decides_anew = false);
+  // Adds the work to `work`. Of the first policy the fewest missions that tell a mean may take the `most`, all else the `usual` limit.
+  std::optional<PolicyValue> best_policy(std::size_t steps, const Limit& usual, const Limit& most, std::uint64_t& work, bool decides_anew = false);
+  std::optional<PolicyValue> best_policy(std::size_t steps, const Limit& limit, std::uint64_t& work, bool decides_anew = false) {
+    return best_policy(steps, limit, limit, work, decides_anew);
+  }
 
+  // Looks one step ahead of each action of the belief moved to, unless `is_late()` comes first. It makes their bounds narrower.
+  void open_actions(const IsOver& is_late);
   // The bounds of all actions at the belief moved to: discounted, over the whole horizon. These bounds and
   // those of `bounds` hold in spite of rounding.
   List<ActionBounds> action_bounds();

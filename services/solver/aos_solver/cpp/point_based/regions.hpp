@@ -8,6 +8,7 @@
 
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
@@ -37,6 +38,7 @@ struct Move {
     double probability;
   };
   List<double> rewards;  // by local state
+  std::optional<double> sure_reward;  // where it is the same in all of these
   Rows<Flow> flows;             // by local state
   std::size_t targets = 0;
   List<ObservationBranch> observation_branches;
@@ -220,6 +222,7 @@ class Regions {
         move.flows.first.push_back(move.flows.elements.size());
       }
       move.targets = targets_.size();
+      if (std::ranges::all_of(move.rewards, [&](double reward) { return reward == move.rewards.front(); })) move.sure_reward = move.rewards.front();
       region.moves.push_back(std::move(move));
     }
   }

@@ -75,11 +75,19 @@ class Sarsop {
   // Runs one trial below an action that is being carried out at the only start.
   bool improve_below(std::uint32_t action, double precision, Asked is_over, Asked is_late) {
     if (roots_.empty()) return false;
-    const Branch& branch = root_branch(action);
+    Branch& branch = root_branch(action);
+    graph_.open(graph_[roots_.front().node], branch);
     backups_.refreshed_lower(branch);
     backups_.refreshed_upper(branch);
     const Successor* next = trial_.widest_of(branch.successors, precision);
     return next != nullptr && improve_from(next->node, precision, is_over, is_late);
+  }
+
+  // Opens all actions at the only start, unless `is_late()` comes first.
+  void open_actions(Asked is_late) {
+    for (std::uint32_t action = 0; action < model_.actions && !roots_.empty() && !is_late(); ++action) {
+      graph_.open(graph_[roots_.front().node], root_branch(action));
+    }
   }
 
   // The bounds of all actions at the only start.
@@ -89,10 +97,11 @@ class Sarsop {
     const double weight = roots_.front().weight;
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
       Branch& branch = root_branch(action);
-      backups_.refresh(branch);
-      double goes_on = branch.rest;
+      if (branch.is_open) backups_.refresh(branch);
+      const double lower = branch.is_open ? branch.lower : graph_.least(graph_[roots_.front().node], branch);
+      double goes_on = branch.is_open ? branch.rest : 1;
       for (const Successor& successor : branch.successors) goes_on += successor.probability;
-      bounds[action] = {moved(weight * branch.lower, -1), moved(weight * branch.upper, 1), trial_.begun()[action],
+      bounds[action] = {moved(weight * lower, -1), moved(weight * branch.upper, 1), trial_.begun()[action],
                         std::min(moved(weight * goes_on, 1), 1.0)};
     }
     return bounds;
@@ -145,8 +154,8 @@ class Sarsop {
   }
 
   // What the best of some simple policies returns from the only start (base_policies.hpp).
-  std::optional<PolicyValue> best_policy(std::size_t steps, bool decides_anew, Asked is_over, Asked is_late, Uniform uniform) {
-    const auto found = policies_.best(graph_[roots_.front().node], steps, decides_anew, is_over, is_late, uniform);
+  std::optional<PolicyValue> best_policy(std::size_t steps, bool decides_anew, const Ends& usual, const Ends& most, Uniform uniform) {
+    const auto found = policies_.best(graph_[roots_.front().node], steps, decides_anew, usual, most, uniform);
     if (!found) return found;
     const double weight = roots_.front().weight;
     return PolicyValue{found->action, weight * found->value, weight * found->within, weight * found->standard_error};
@@ -301,7 +310,7 @@ class Sarsop {
     return root.weight * (node.upper - node.lower);
   }
 
-  // The open branch of an action at the only start, also of one that was dropped there.
+  // The branch of an action at the only start, also of one that was dropped there.
   Branch& root_branch(std::uint32_t action) {
     Node& node = graph_[roots_.front().node];
     graph_.expand(node);
@@ -310,7 +319,6 @@ class Sarsop {
       const auto dropped = std::ranges::find(dropped_at_root_, action, &Branch::action);
       branch = dropped != dropped_at_root_.end() ? &*dropped : &dropped_at_root_.emplace_back(graph_.closed_branch(node, action));
     }
-    graph_.open(node, *branch);
     return *branch;
   }
 

@@ -103,21 +103,22 @@ class PointBased {
     const auto anew_is_over = over_after(1 - share_of_missions + share_of_anew);
     const auto is_over = over_after(1);
     Operations searched = 0, work = 0;
-    // Runs trials until a share of the budget is spent.
-    const auto try_until = [&](double share, const auto& is_spent) {
+    // Runs trials until a share of the budget is spent. What the last one has found is taken until `is_late()`.
+    const auto try_until = [&](double share, const auto& is_spent, const auto& is_late) {
       if ((most > 0 && work >= work_of(share)) || is_spent()) return;
-      const Operations trials = search_->improve(most == 0 ? 0 : work_of(share) - work, is_spent, is_over);
+      const Operations trials = search_->improve(most == 0 ? 0 : work_of(share) - work, is_spent, is_late);
       searched += trials;
       work += trials;
     };
-    try_until(share_of_trials, trials_are_over);
+    try_until(share_of_trials, trials_are_over, policies_are_over);
     const Operations most_of_policies = std::max<Operations>(work_of(1 - share_of_missions - share_of_trials), most > 0);
-    if (policy_tries_.is_due()) try_policies(most_of_policies, policies_are_over, work);
-    if (!policy_) try_until(1 - share_of_missions, policies_are_over);
+    if (policy_tries_.is_due()) try_policies({most_of_policies, policies_are_over}, {most == 0 ? 0 : most - std::min(work, most - 1), is_over}, work);
+    if (!policy_) try_until(1 - share_of_missions, policies_are_over, is_over);
+    search_->open_actions(is_over);
     const Operations most_of_anew = std::max<Operations>(work_of(share_of_anew), most > 0);
-    anew_ = search_->best_policy(static_cast<std::size_t>(horizon_), most_of_anew, anew_is_over, work, /*decides_anew=*/true);
+    anew_ = search_->best_policy(static_cast<std::size_t>(horizon_), {most_of_anew, anew_is_over}, work, /*decides_anew=*/true);
     if (!policy_ && (most == 0 || work < most) && !is_over()) work += play(choice(), most == 0 ? 0 : most - work, is_over);
-    try_until(1, is_over);
+    try_until(1, is_over, is_over);
     const std::uint64_t simulations = Budget::simulations_of(searched, horizon_);
     known_ += simulations;
     return simulations;
@@ -177,11 +178,13 @@ class PointBased {
   }
 
  private:
+  using Limit = point_based::OnlineSarsop::Limit;
+
   // Finds out whether a simple policy decides. Where none does, or too few missions were played to tell, the next tries are put
   // off, and trials have the time.
-  void try_policies(Operations most, const point_based::OnlineSarsop::IsOver& is_over, Operations& work) {
+  void try_policies(const Limit& usual, const Limit& most, Operations& work) {
     const Operations before = work;
-    policy_ = search_->best_policy(static_cast<std::size_t>(horizon_), most, is_over, work);
+    policy_ = search_->best_policy(static_cast<std::size_t>(horizon_), usual, most, work);
     if (policy_) policy_tries_.succeed();
     else if (work > before) policy_tries_.fail();
   }
