@@ -1,6 +1,5 @@
 """The programs `aos` and `aos-up`: Ctrl-C ends them without a word while Python still imports."""
 
-import gc
 import signal
 from importlib import import_module
 
@@ -17,15 +16,8 @@ def up_main() -> None:
 
 def _run(name: str) -> None:
     """Runs a program of the command line, whose imports take up to two seconds; Python would show the place
-    that it has come to. They leave no garbage, and what looks for some takes time."""
-    gc.disable()
+    that it has come to."""
     before = signal.getsignal(signal.SIGINT)
     if before is signal.default_int_handler:  # Else whoever started it may want it to go on.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-    def has_imported() -> None:
-        gc.freeze()
-        gc.enable()
-        signal.signal(signal.SIGINT, before)
-
-    getattr(import_module("aos_deploy.cli"), name)(has_imported)
+    getattr(import_module("aos_deploy.cli"), name)(lambda: signal.signal(signal.SIGINT, before))

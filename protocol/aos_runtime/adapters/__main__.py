@@ -7,10 +7,7 @@ The first is the command of an adapter `command`, which finds in its environment
 is how aos-up starts an adapter of the kind `class`.
 """
 
-import gc
 import sys
-
-gc.disable()  # See `run_process`.
 
 from aos_runtime.adapters.host import serve_adapter
 from aos_runtime.adapters.settings import AdapterSettings

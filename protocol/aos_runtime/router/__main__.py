@@ -1,9 +1,5 @@
 """`python -m aos_runtime.router SETTINGS.json`: the bus router as a process."""
 
-import gc
-
-gc.disable()  # See `run_process`.
-
 from aos_runtime.processes.lifecycle import run_process
 from aos_runtime.router.routing import RouterSettings, route
 

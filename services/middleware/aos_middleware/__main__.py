@@ -1,9 +1,5 @@
 """`python -m aos_middleware SETTINGS.json`: the middleware service as a process."""
 
-import gc
-
-gc.disable()  # See `run_process`.
-
 from aos_middleware.service import serve
 from aos_middleware.settings import Settings
 from aos_runtime.processes.lifecycle import run_service

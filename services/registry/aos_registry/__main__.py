@@ -1,9 +1,5 @@
 """The registry service as a process: `python -m aos_registry SETTINGS.json`."""
 
-import gc
-
-gc.disable()  # See `run_process`.
-
 from aos_registry.service import serve
 from aos_registry.settings import Settings
 from aos_runtime.processes.lifecycle import run_service

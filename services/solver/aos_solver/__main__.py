@@ -1,9 +1,5 @@
 """`python -m aos_solver SETTINGS.json`: the solver service as a process."""
 
-import gc
-
-gc.disable()  # See `run_process`.
-
 from aos_runtime.processes.lifecycle import run_service
 from aos_solver.service import serve
 from aos_solver.settings import Settings
