@@ -31,7 +31,7 @@ class Outbox:
         self._keys = keys
         self._loop = asyncio.get_running_loop()
         self._sent: Counter[str] = Counter()
-        self._unsent: deque[tuple[str, dict[str, Any]]] = deque(maxlen=MAX_UNSENT_MESSAGES)
+        self._unsent: deque[tuple[str, str, dict[str, Any]]] = deque(maxlen=MAX_UNSENT_MESSAGES)
         self._sending = threading.Lock()
         self._is_sending = False
         self._giving_way: Counter[str] = Counter()
@@ -53,7 +53,7 @@ class Outbox:
         if not isinstance(topic, str):
             raise SkillError(f"the topic {topic!r} is no text", code="AOS510")
         try:
-            self._keys.topic(topic)
+            key = self._keys.topic(topic)
         except BusError as error:
             message = f"no topic has such a name: {error.message}"
             raise SkillError(message, code="AOS510", hint=error.hint) from error
@@ -61,7 +61,7 @@ class Outbox:
         with self._sending:
             if len(self._unsent) == MAX_UNSENT_MESSAGES:
                 self._giving_way[self._unsent[0][0]] += 1
-            self._unsent.append((topic, fields))
+            self._unsent.append((topic, key, fields))
             is_first, self._is_sending = not self._is_sending, True
         if is_first:
             self._loop.call_soon_threadsafe(self._send_some)
@@ -75,23 +75,23 @@ class Outbox:
         self._note_lost(tells=True)
 
     def _send_some(self) -> None:
-        """Sends for the time of a turn."""
+        """Sends one message, and more for the time of a turn."""
         ends_s = time.monotonic() + _TURN_S
-        while time.monotonic() < ends_s and self._send_oldest():
+        while self._send_oldest() and time.monotonic() < ends_s:
             pass
-        self._note_lost(tells=time.monotonic() - self._told_s >= _TOLD_AGAIN_S)
         with self._sending:
-            self._is_sending = bool(self._unsent)
-        if self._is_sending:
+            goes_on = self._is_sending = bool(self._unsent)
+        self._note_lost(tells=not goes_on or time.monotonic() - self._told_s >= _TOLD_AGAIN_S)
+        if goes_on:
             self._loop.call_soon(self._send_some)
 
     def _send_oldest(self) -> bool:
         with self._sending:
             if not self._unsent:
                 return False
-            topic, fields = self._unsent.popleft()
+            topic, key, fields = self._unsent.popleft()
         self._sent[topic] += 1
-        self._bus.tell(self._keys.topic(topic), TopicMessage(self._sent[topic], fields))
+        self._bus.tell(key, TopicMessage(self._sent[topic], fields))
         return True
 
     def _note_lost(self, tells: bool) -> None:
