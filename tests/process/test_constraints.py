@@ -170,14 +170,14 @@ async def test_whichever_planner_decides_it_looks_until_the_risk_is_allowed(plan
 
 
 async def test_missions_violate_a_constraint_less_often_than_it_allows():
-    runs = await play(await built(HOB, f"0.05: {TOUCHES_HOT}"), range(1, 181))
+    runs = await play(await built(HOB, f"0.05: {TOUCHES_HOT}"), range(1, 301))
     violations = sum(run.violated == (TOUCHES_HOT,) for run in runs)
     assert interval_of_share(violations, len(runs)).high < 0.05
     # Every touch risks the same, which is known by hand.
     touches = sum("touch" in run.actions for run in runs)
     share = interval_of_share(violations, touches)
     assert share.low < AFTER_TWO < share.high
-    free = await play(await built(HOB, f"0.999: {TOUCHES_HOT}"), range(1, 51))
+    free = await play(await built(HOB, f"0.999: {TOUCHES_HOT}"), range(1, 101))
     touched_hot = interval_of_share(sum(bool(run.violated) for run in free), len(free))
     assert 0.05 < touched_hot.low < 0.3 < touched_hot.high
 

@@ -162,30 +162,40 @@ TEST("Twice as many states take a simple policy twice the work") {
 }
 
 TEST("A simple policy decides with a standard error above the bound, and with less if it decided last") {
-  // A look for 4 tells whether to take 10, or to end. To take without it loses 100.
-  Problem problem = units::world(3, 3, 0.9);
-  problem.starts = {{0, 0.5}, {1, 0.5}};
-  problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};
-  problem.endings[2] = 1;
-  for (std::uint32_t state = 0; state < 2; ++state) {
-    units::row(problem, state, 0) = {{1.0, state, state, -4.0}};
-    units::row(problem, state, 1) = {{1.0, 2, 0, state == 0 ? 10.0 : -100.0}};
-    units::row(problem, state, 2) = {{1.0, 2, 0, 0.0}};
-  }
+  // A look for 4 tells whether to take 10, or to end for next to nothing. To take without it loses 100.
   int decided[] = {0, 0};
-  for (int odds = 44; odds < 70; ++odds) {
-    for (const bool has_decided : {false, true}) {
-      point_based::OnlineSarsop search{flat_model(problem)};
-      std::uint64_t work = 0;
-      search.move_to({{0, 0.9}, {1, 0.1}});
-      if (has_decided) EXPECT(search.best_policy(10, {0, never}, work).has_value());
-      search.move_to({{0, 0.01 * odds}, {1, 1 - 0.01 * odds}});
-      const auto policy = search.best_policy(10, {0, never}, work);
-      decided[has_decided] += policy.has_value();
-      EXPECT(!policy || policy->value - (has_decided ? 0 : policy->standard_error) > search.bounds().first);
+  int all = 0, narrow = 0;
+  for (const double end : {-0.4, -0.2, 0.0, 0.1, 0.2, 0.3}) {
+    Problem problem = units::world(3, 3, 0.9);
+    problem.starts = {{0, 0.5}, {1, 0.5}};
+    problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};
+    problem.endings[2] = 1;
+    for (std::uint32_t state = 0; state < 2; ++state) {
+      units::row(problem, state, 0) = {{1.0, state, state, -4.0}};
+      units::row(problem, state, 1) = {{1.0, 2, 0, state == 0 ? 10.0 : -100.0}};
+      units::row(problem, state, 2) = {{1.0, 2, 0, end}};
+    }
+    for (int odds = 40; odds < 60; odds += 2) {
+      ++all;
+      for (const bool has_decided : {false, true}) {
+        point_based::OnlineSarsop search{flat_model(problem)};
+        std::uint64_t work = 0;
+        search.move_to({{0, 0.9}, {1, 0.1}});
+        if (has_decided) EXPECT(search.best_policy(10, {0, never}, work).has_value());
+        search.move_to({{0, 0.01 * odds}, {1, 1 - 0.01 * odds}});
+        const auto policy = search.best_policy(10, {0, never}, work);
+        if (!policy) continue;
+        ++decided[has_decided];
+        const double least = search.bounds().first;
+        EXPECT(policy->value > least);
+        if (policy->value - policy->standard_error > least) continue;
+        ++narrow;
+        EXPECT(has_decided);
+      }
     }
   }
-  EXPECT(0 < decided[0] && decided[0] < 26 && 0 < decided[1] && decided[1] < 26);
+  EXPECT(narrow > 0);
+  EXPECT(0 < decided[0] && decided[0] < decided[1] && decided[1] < all);
 }
 
 TEST("Beside a room of too many states, a plan for the room behind it opens all boxes in turn") {

@@ -5,7 +5,8 @@
 //   the reward, a share of what follows if more is known from then on (QMDP: Littman, Cassandra and Kaelbling, 1995), and
 //   a weight times the mutual information between the state and the next observation.
 //
-// Missions are played by each in turns. The better half goes on, until one is left, and so does the policy that decided last.
+// Each plays the fewest missions that tell a mean, and then more of them in turns. The better half goes on, until one is left, and
+// so does the policy that decided last.
 #pragma once
 
 #include "aos/base/statistics.hpp"
