@@ -90,7 +90,7 @@ def with_ratios(rows: Iterable[Row]) -> tuple[Row, ...]:
 
 def this_machine(compiler: str, seed: int, budget_s: float) -> Machine:
     """The machine as it is now, and the settings of a run."""
-    peers = {name: version_of(name) for name in ("pomdp-py",) if version_of(name)}
+    peers = {name: version for name in ("pomdp-py",) if (version := version_of(name))}
     return Machine(
         processor=_processor(),
         cores=len(os.sched_getaffinity(0)),

@@ -16,18 +16,21 @@ Odd = tuple[tree_sitter.Node, str, str]
 
 def odd_parts(node: tree_sitter.Node) -> Iterator[Odd]:
     """Yields the place, a message and a hint."""
-    follows = node.next_named_sibling
     if node.type == "binary_expression" and len(node.children) == 3:
         yield from _calculated(node)
     elif node.type == "if_statement" and node.child_by_field_name("alternative") is None:
         body = node.child_by_field_name("consequence")
         if body is not None and text_of(body) == ";":
             yield body, "this semicolon ends the `if`", "Take it out"
-    elif node.type == "case_statement" and follows is not None and follows.type == "case_statement":
+    elif node.type == "case_statement" and _is_case(node.next_named_sibling):
         parts = [part.type for part in below(node)]
         if ";" in parts and "fall" not in text_of(node) and not {*_LEAVING, "ERROR"} & {*parts}:
             hint = "Write `break;` at its end, or `[[fallthrough]];` where this is meant"
             yield node.children[0], "what stands here goes on into the next `case`", hint
+
+
+def _is_case(node: tree_sitter.Node | None) -> bool:
+    return node is not None and node.type == "case_statement"
 
 
 def _calculated(node: tree_sitter.Node) -> Iterator[Odd]:

@@ -48,17 +48,17 @@ export function Controls() {
 export const OfAction = ({ action }) =>
   canSteer() && html`<span class="of-action">
     <button class="quiet" disabled=${Boolean(busy.value)} onClick=${() => steer("act", { actions: [action] })} aria-label=${`Do ${action}`}>Do</button>
-    ${!(action in (state.value?.left_out ?? {})) && html`<button class="quiet" disabled=${Boolean(busy.value)} onClick=${() => steer("leave_out", { name: action })} aria-label=${`Leave out ${action}`}>Leave out</button>`}
+    ${!isLeftOut(action) && html`<button class="quiet" disabled=${Boolean(busy.value)} onClick=${() => steer("leave_out", { name: action })} aria-label=${`Leave out ${action}`}>Leave out</button>`}
   </span>`;
 
-const without = () => Object.entries(state.value?.left_out ?? {});
-export const leftOut = () => without().map(([name, by]) => `${name} is left out by ${by}`);
+export const isLeftOut = (name) => name in (state.value?.left_out ?? {});
 
 export function LeftOut() {
+  const without = Object.entries(state.value?.left_out ?? {});
   const asked = state.value?.asked ?? [];
-  if (!without().length && !asked.length) return null;
+  if (!without.length && !asked.length) return null;
   return html`<div class="left-out">
     ${asked.length > 0 && html`<p class="aside">Still to come: ${asked.map((action) => html`<span class="chip">${action}</span> `)}</p>`}
-    ${without().map(([name, by]) => html`<p class="aside"><span class="chip">${name}</span> is left out by ${by} ${canSteer() && html`<button class="link" onClick=${() => steer("take_back", { name })}>Take it back</button>`}</p>`)}
+    ${without.map(([name, by]) => html`<p class="aside"><span class="chip">${name}</span> is left out by ${by} ${canSteer() && html`<button class="link" onClick=${() => steer("take_back", { name })}>Take it back</button>`}</p>`)}
   </div>`;
 }

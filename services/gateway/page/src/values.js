@@ -2,7 +2,7 @@
 import { html, useEffect, useState, useWidth, width } from "./ui.js";
 import { briefAction, isNumber, plusMinus, signed } from "./format.js";
 import { at, index, loadRecord, record, records, recordsChanged, steps } from "./store.js";
-import { canSteer, leftOut, OfAction } from "./steering.js";
+import { canSteer, isLeftOut, OfAction } from "./steering.js";
 
 // Of an action that the search has not tried nothing is known.
 const isKnown = (each, found) => isNumber(each.q) && (each.n > 0 || !found.simulations);
@@ -27,10 +27,13 @@ export function Values() {
     ${sorted.length > SHOWN && html`<button class="link" onClick=${() => setShowsAll(!showsAll)}>${showsAll ? "Show fewer" : `Show all ${sorted.length}`}</button>`}
     ${!sorted.length && html`<p class="empty">${found.planner ? `${found.planner} gives no values.` : "Nothing was searched for this action."}</p>`}
     ${!sorted.length && canSteer() && html`<${WithoutValues} />`}
-    ${[...new Set(Object.values(found.set_aside ?? {}).filter((why) => !leftOut().includes(why))), ...notNow(found)].map((why) => html`<p class="aside">${why}</p>`)}
+    ${[...setAside(found), ...notNow(found)].map((why) => html`<p class="aside">${why}</p>`)}
     ${(found.constraints ?? []).map((each) => html`<p class="aside">Never <code>${each.never}</code>: risks ${each.risk.toPrecision(2)} of ${each.left.toPrecision(2)} that are left.</p>`)}
   </div>`;
 }
+
+// Why skills and actions stay away, beside those that somebody leaves out, which are told above.
+const setAside = (found) => new Set(Object.entries(found.set_aside ?? {}).filter(([name]) => !isLeftOut(name)).map(([, why]) => why));
 
 // Actions that the search knew and nobody could run, together where the reason is the same.
 function notNow(found) {
