@@ -28,7 +28,7 @@ from aos_solver.mission.simulation import simulate_mission
 BUNDLES = Path(__file__).parents[1] / "deploy" / "bundles"
 USUAL = (
     "armadillo-finer",
-    "armadillo-finer-blind",
+    "../armadillo-finer-blind.yaml",
     "cleanlab",
     "errand",
     "tictactoe",

@@ -1,4 +1,4 @@
-from collections.abc import AsyncIterator, Mapping, Sequence
+from collections.abc import AsyncIterator, Collection, Mapping, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
@@ -24,10 +24,11 @@ async def built_bundle(bundle: Path) -> BuiltModel:
     return await built_project(bundle_project(bundle))
 
 
-async def built_bundles(bundles: Sequence[Path]) -> BuiltModel:
-    """The compiled model of several; documents of a later one stand in place of those with the same name."""
-    files = {file.name: file.read_text() for bundle in bundles for file in sorted(bundle.iterdir())}
-    return await built_text(files)
+async def built_bundles(bundles: Sequence[Path], leave_out: Collection[str] = ()) -> BuiltModel:
+    """The compiled model of several, without the skills that are left out; documents of a later bundle stand
+    in place of those with the same name."""
+    files = [file for bundle in bundles for file in sorted(bundle.iterdir()) if file.stem not in leave_out]
+    return await built_text({file.name: file.read_text() for file in files})
 
 
 async def built_text(files: Mapping[str, str]) -> BuiltModel:

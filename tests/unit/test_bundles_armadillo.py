@@ -25,11 +25,7 @@ def test_the_picking_skill_has_the_figures_of_its_statistics(name):
     assert {figure.strip() for figures in lists for figure in figures.split(",")} == FIGURES[name]
 
 
-def test_without_sensing_the_rest_is_the_same_and_others_have_what_differs_alone():
-    whole = files_of("armadillo-finer")
-    sensing = {file for file in whole if file.startswith("observe_")}
-    blind = {file: text for file, text in whole.items() if file not in sensing}
-    assert files_of("armadillo-finer-blind") == blind
+def test_the_other_bundles_have_what_differs_alone():
     # The environment has another horizon.
     assert set(files_of("armadillo-finer-enhanced")) == {"armadillo.ef", "pick.am", "pick.sd"}
     for name in ("armadillo-rough", "armadillo-rough-enhanced"):
