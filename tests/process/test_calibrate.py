@@ -119,7 +119,8 @@ def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path)
         )
         for mission in recorded_missions
     )
-    results = [calibrate(missions, [FINER, FINER.with_name("armadillo-rough"), RETRACT]) for missions in (recorded_missions, unseen)]
+    bundles = [FINER, FINER.with_name("armadillo-rough"), RETRACT]
+    results = [calibrate(missions, bundles) for missions in (recorded_missions, unseen)]
     picks = [next(e for e in result.estimates if e.draw.skill == "pick") for result in results]
     widths = [pick.outcomes[0].probability.high - pick.outcomes[0].probability.low for pick in picks]
     assert picks[0].is_counted
