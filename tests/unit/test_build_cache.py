@@ -98,14 +98,15 @@ async def test_a_process_that_does_not_get_on_is_waited_for_until_a_deadline(tmp
 
 
 async def test_who_waits_for_a_failure_tries_by_itself(tmp_path):
-    somebody_waits = asyncio.Event()
+    has_lock, somebody_waits = asyncio.Event(), asyncio.Event()
 
     async def fail(_: Path):
+        has_lock.set()
         await somebody_waits.wait()
         raise RuntimeError("no")
 
     failing = asyncio.create_task(BuildCache(tmp_path).fill("model-e", fail))
-    await asyncio.sleep(0)  # It has the lock.
+    await has_lock.wait()
     entry = await BuildCache(tmp_path).fill("model-e", make, patience_s=HANG_S, on_wait=somebody_waits.set)
     with pytest.raises(RuntimeError):
         await failing
