@@ -89,7 +89,7 @@ async def test_the_panda_never_loses_a_game_that_it_begins():
 async def test_the_person_of_the_other_documents_makes_no_mistake():
     both = [BUNDLES / name for name in ("tictactoe", "tictactoe-perfect-person")]
     chance = random.Random(1)
-    async with engine_of(await built_bundles(both, SENSING)) as engine:
+    async with engine_of(await built_bundles(both)) as engine:
         indices = {action.name: index for index, action in enumerate(engine.description.actions)}
         for seed in range(1, 21):
             await engine.reset_world(seed)
