@@ -94,6 +94,7 @@ def test_the_state_digest_is_of_the_declared_state():
         ("state__.total = rand();", "rand"),
         ("static int calls = 0; state__.total = ++calls;", "static"),
         ("std::mt19937 own; state__.total = own();", "mt19937"),
+        ("auto now = std::chrono::steady_clock::now(); state__.total = 1;", "steady_clock"),
     ],
 )
 def test_code_that_cannot_be_repeated_exactly_is_refused(act, word):
@@ -103,8 +104,9 @@ def test_code_that_cannot_be_repeated_exactly_is_refused(act, word):
     assert str(diagnostics[0].span) == f"act.sd:3:{act.index(word) + 1}"
 
 
-def test_a_constant_static_and_a_variable_called_time_are_fine():
-    assert lower(project_of("static const int two = 2; int time = two; state__.total = time;"))[0] is not None
+def test_a_constant_static_a_variable_called_time_and_a_duration_are_fine():
+    code = "static const int two = 2; int time = two; state__.total = time + std::chrono::seconds{3}.count();"
+    assert lower(project_of(code))[0] is not None
 
 
 def test_a_state_given_an_observation_takes_the_local_variables_that_it_names():

@@ -68,6 +68,7 @@ def test_plain_code_stands_as_it_is(code):
          "c = AOS.template SampleDiscrete<tColour>({1, 2});"),
         ("state->x = 1;", "state.x = 1;"),
         ("auto all = state.tBoxObjects;", "auto all = aos::listed(state.tBoxObjects());"),
+        ("auto& all = state.tBoxObjects;", "auto& &all = state.tBoxObjects();"),
         ("auto f = [n](double p) { return AOS.Bernoulli(p); };",
          "auto f = [n, &AOS](double p) { return AOS.Bernoulli(p); };"),
         ("auto f = [] { return AOSUtils::Bernoulli(row[i] (2)); };",

@@ -100,7 +100,8 @@ def _check_any_response(
     span = read[-1][0].snippet.span if read else model.span
     title = f"monitor {model.name}" if mapping.monitor else f"dynamic model of {model.name}"
     message = f"the {title} never sets {word}, so that every response is impossible"
-    findings.error("AOS117", message, span, hint)
+    report = findings.error if mapping.monitor else findings.warning
+    report("AOS117", message, span, hint)
     return True
 
 

@@ -25,6 +25,7 @@ _HEADERS = {
     "cctype": "isalnum isalpha isdigit islower isspace isupper tolower toupper",
     "cfloat": "DBL_EPSILON DBL_MAX DBL_MIN FLT_EPSILON FLT_MAX FLT_MIN",
     "charconv": "from_chars to_chars",
+    "chrono": "chrono chrono_literals",
     "climits": "CHAR_BIT INT_MAX INT_MIN LLONG_MAX LLONG_MIN LONG_MAX LONG_MIN UINT_MAX",
     "complex": "complex",
     "cstdio": "fprintf printf putchar puts snprintf sprintf",
@@ -70,11 +71,12 @@ _HEADERS = {
 _HEADER_OF = {name: header for header, names in _HEADERS.items() for name in names.split()}
 
 _UNREPEATABLE = frozenset({
-    "bernoulli_distribution", "chrono", "clock", "clock_gettime", "default_random_engine",
+    "bernoulli_distribution", "clock", "clock_gettime", "default_random_engine",
     "discrete_distribution", "drand48", "getrandom", "gettimeofday", "mt19937", "mt19937_64",
     "normal_distribution", "rand", "rand_r", "random", "random_device", "random_shuffle", "srand",
     "srandom", "time", "uniform_int_distribution", "uniform_real_distribution",
 })  # fmt: skip
+_CLOCK = re.compile(r"(?<=chrono::)\w+_clock\b|\b(?:steady|system|high_resolution)_clock(?=::)")
 _CHANGING_STATIC = re.compile(
     r"(?<!\bconst )(?<!\bconstexpr )\b(?:static|thread_local)\b"
     r"(?!\s+(?:[\w:<>,]+\s+){0,3}?(?:const|constexpr)\b)"  # a constant
@@ -90,4 +92,5 @@ def headers_for(names: frozenset[str]) -> tuple[str, ...]:
 def unrepeatable_names(called: frozenset[str], code: str) -> list[str]:
     """Returns what in `code` (without comments and texts) gives another result when it runs again."""
     found = sorted(called & _UNREPEATABLE)
+    found += sorted(set(_CLOCK.findall(code)))
     return [*found, *(match[0] for match in _CHANGING_STATIC.finditer(code))]
