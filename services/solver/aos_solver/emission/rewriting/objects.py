@@ -23,7 +23,7 @@ def object_edits(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, 
     - `tCup* cups[2] = {...}` becomes an array of such pointers
     - `vector<tCup*> cups` becomes `vector<aos::Pointer<tCup, decltype(state)>> cups` in the same way
     - `tCup& cup = *state.tCupObjects[0]` becomes `auto& cup`
-    - `auto cups = state.tCupObjects` becomes a vector, which may be sorted; `auto& cups` becomes `auto&& cups`
+    - `auto cups = state.tCupObjects` becomes a vector, which may be sorted, and `auto& cups` `auto&& cups`
     """
     if not object_types:
         return
@@ -40,12 +40,13 @@ def object_edits(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, 
         elif reference is not None and reference[2] in object_types and not reference[1]:
             is_object = initial is not None and bool(_copies_in(cpp, reference[2], initial))
             yield from [(reference.start(2), reference.end(2), "auto")] if is_object else []
-        elif declaration.type in ("auto", "auto&") and initial is not None and _is_list(cpp, initial, object_types):
-            if declaration.type == "auto&":  # The list is a value, which `auto&&` takes.
-                yield declaration.extent.start, declaration.extent.start, "&"
-            else:
-                yield initial.start, initial.start, "aos::listed("
-                yield initial.end, initial.end, ")"
+        elif initial is None or not _is_list(cpp, initial, object_types):
+            continue
+        elif declaration.type == "auto":
+            yield initial.start, initial.start, "aos::listed("
+            yield initial.end, initial.end, ")"
+        elif declaration.type == "auto&":  # The list is a value, which `auto&&` takes.
+            yield declaration.extent.start, declaration.extent.start, "&"
     yield from _within_types(cpp, object_types)
 
 
