@@ -23,17 +23,17 @@ SENSING = ("observe_holding", "observe_arm_outstretched")
 
 
 @pytest.mark.parametrize(
-    ("names", "first"),
+    ("names", "horizon", "first"),
     [
-        (("armadillo-finer", "armadillo-rough"), "pick"),
-        (("armadillo-finer",), TO_EASY_TABLE),
-        (("armadillo-finer", "armadillo-finer-enhanced", "armadillo-rough-enhanced"), "pick"),
-        (("armadillo-finer", "armadillo-finer-enhanced"), TO_EASY_TABLE),
+        (("armadillo-finer", "armadillo-rough"), None, "pick"),
+        (("armadillo-finer",), None, TO_EASY_TABLE),
+        (("armadillo-finer", "armadillo-finer-enhanced", "armadillo-rough-enhanced"), 8, "pick"),
+        (("armadillo-finer", "armadillo-finer-enhanced"), 8, TO_EASY_TABLE),
     ],
 )
-async def test_without_sensing_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(names, first):
+async def test_without_sensing_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(names, horizon, first):
     async with engine_of(await built_bundles([BUNDLES / name for name in names], SENSING)) as engine:
-        values = sorted((await engine.exact_values()).actions, key=lambda value: -value.q)
+        values = sorted((await engine.exact_values(horizon)).actions, key=lambda value: -value.q)
     assert values[0].action == first
     assert values[0].q > values[1].q + 1
 

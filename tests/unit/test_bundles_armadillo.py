@@ -26,8 +26,7 @@ def test_the_picking_skill_has_the_figures_of_its_statistics(name):
 
 
 def test_the_other_bundles_have_what_differs_alone():
-    # The environment has another horizon.
-    assert set(files_of("armadillo-finer-enhanced")) == {"armadillo.ef", "pick.am", "pick.sd"}
+    assert set(files_of("armadillo-finer-enhanced")) == {"pick.am", "pick.sd"}
     for name in ("armadillo-rough", "armadillo-rough-enhanced"):
         assert set(files_of(name)) == {"pick.sd"}
 
