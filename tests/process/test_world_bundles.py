@@ -31,7 +31,9 @@ SENSING = ("observe_holding", "observe_arm_outstretched")
         (("armadillo-finer", "armadillo-finer-enhanced"), 8, TO_EASY_TABLE),
     ],
 )
-async def test_without_sensing_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(names, horizon, first):
+async def test_without_sensing_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(
+    names, horizon, first
+):
     async with engine_of(await built_bundles([BUNDLES / name for name in names], SENSING)) as engine:
         values = sorted((await engine.exact_values(horizon)).actions, key=lambda value: -value.q)
     assert values[0].action == first
