@@ -62,6 +62,18 @@ TEST("Before a robot leaves for what may be better elsewhere it looks where it i
   }
 }
 
+TEST("A look that had no time is gone on with, whatever it takes") {
+  const Problem problem = two_rooms(0.5, 0.7);
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const Belief belief = Belief::initial(random);
+  aos::OptionPolicy<TableModel> policy;
+  EXPECT(!policy.prepare(belief, 1e6, 1e-9, random).empty());
+  EXPECT(!policy.knows_ways());
+  policy.look_on(random);
+  EXPECT(policy.knows_ways());
+}
+
 // A thing is in one of 15 rooms, but not in the first one, where the robot is. No look pays for itself, and each step costs 1.
 TEST("A robot looks elsewhere before it looks for ever where it knows that nothing is") {
   constexpr std::uint32_t rooms = 15, end = rooms * rooms;

@@ -78,6 +78,13 @@ class OptionLibrary {
     return found;
   }
 
+  // Adds ways from the first of the states from which one is found within so many steps, however long they take.
+  void find_any(const List<State>& states, double steps, Sampler& random) {
+    for (std::size_t k = 0; k < states.size() && options_.empty() && steps > 0; ++k) {
+      if (counts_ || !add_best_end(states[k], steps, random)) add_from(states[k], steps, random);
+    }
+  }
+
   // Drops what was never among the best since the gains were measured, where options are many. Ways that were searched for by
   // conditions lead from few states, and to find them again takes less than to try them from others. The one that was `taken` stays,
   // with what is left of it, so that the robot goes on by it if no better one is found.

@@ -66,6 +66,13 @@ class OptionPolicy {
     return obstacle;
   }
 
+  // Looks once more for a way from any state of `prepare`. That there is none is told by a number of steps, which is the same on slow machines.
+  void look_on(Sampler random) {
+    const ForgottenTexts forgotten;
+    clock_.begin(0);
+    library_.find_any(belief_.states(), whole_look, random);
+  }
+
   // Decides for the belief of `prepare`. Returns the work as simulations.
   std::uint64_t search(const Belief<Model>& belief, int horizon, Sampler& random, const BarredActions& barred) {
     const ForgottenTexts forgotten;
@@ -151,6 +158,7 @@ class OptionPolicy {
   static constexpr double of_all = 0.95;   // to end what is at hand takes the rest
   static constexpr double of_twins = 0.1;      // of the steps that are left
   static constexpr double enough_found = 0.5;  // of the belief
+  static constexpr double whole_look = 80'000;  // steps: searches at both widths from two states (docs/lab/budgets.md)
   static constexpr double matters = 1e-6;       // of the value, as a regret
   static constexpr std::size_t tried_options = 8;
   static constexpr double of_detours = 0.4;  // of the steps and the time, after a lost step

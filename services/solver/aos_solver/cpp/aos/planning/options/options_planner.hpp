@@ -36,18 +36,21 @@ class OptionsPlanner final : public Planner<Model> {
       return false;
     }
     has_looked_ = true;
+    const bool is_first = !finds_nothing_.has_value();
     const bool is_short = budget.seconds > 0 && budget.seconds < first_look_s;
-    const std::string obstacle = look(question, is_short && !finds_nothing_, Sampler{Sampler{random}.bits()}, choosing);
+    const std::string obstacle = look(question, is_short && is_first, Sampler{Sampler{random}.bits()}, choosing);
     if (!obstacle.empty()) choosing.why += "; " + obstacle;
+    if (is_first && !policy_.knows_ways() && !policy_.earns_anyway()) policy_.look_on(Sampler{random});
     // Where no way at all is known, the next look is put off, each time for longer.
-    const bool is_in_vain = !policy_.knows_ways() || policy_.earns_anyway() || earns_idle_.value_or(false);
+    const bool hides_ways = policy_.earns_anyway() || earns_idle_.value_or(false);
+    const bool is_in_vain = !policy_.knows_ways() || hides_ways;
     if (is_in_vain) looks_.fail();
     else looks_.succeed();
-    finds_nothing_ = is_in_vain && (!is_short || finds_nothing_.value_or(true));
+    finds_nothing_ = hides_ways || (!policy_.knows_ways() && finds_nothing_.value_or(true));
     return obstacle.empty();
   }
 
-  // Whether the last look has found no way that tells what to do, from any state. A short one does not outweigh a longer one.
+  // Whether no look of this mission has found a way that tells what to do, from any state.
   bool finds_nothing() const { return finds_nothing_.value_or(false); }
   // Whether the last decision has looked for ways.
   bool has_looked() const { return has_looked_; }
