@@ -3,7 +3,6 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from mappings import mapping_text
 from models import engine_of_text, simulated
 from numpy.typing import NDArray
 
@@ -29,26 +28,13 @@ THREE_LEVELS = "state.level = AOSUtils::SampleDiscrete(vector<double>{0.5, 0.3, 
 PRIOR = (0.5, 0.3, 0.2)
 
 
-def mapping(*locals_: str, responses: tuple[str, ...] = ("read",), skill: str = "look") -> str:
-    rules = [f"{name}: code == '{name}'" for name in responses]
-    kinds = dict(reversed(local.split()) for local in ("string code", *locals_))
-    return mapping_text(*rules, project="gauge", skill=skill, reports=kinds)
+def documents(dynamic_model: str, belief: str = THREE_LEVELS) -> dict[str, str]:
+    return gauge({"look": dynamic_model}) | {"gauge.ef": ENVIRONMENT.format(belief=belief)}
 
 
-def documents(dynamic_model: str, am: str, belief: str = THREE_LEVELS) -> dict[str, str]:
-    return {
-        "gauge.ef": ENVIRONMENT.format(belief=belief),
-        "look.sd": f"project: gauge\n\ndynamic_model:\n{dynamic_model}",
-        "look.am": am,
-    }
-
-
-def gauge(skills: Mapping[str, tuple[str, str]]) -> dict[str, str]:
-    """The documents with these skills, each with its dynamic model and its mapping: one model is compiled."""
-    files = {}
-    for skill, (dynamic_model, am) in skills.items():
-        files[f"{skill}.sd"] = f"project: gauge\n\ndynamic_model:\n{dynamic_model}"
-        files[f"{skill}.am"] = am
+def gauge(skills: Mapping[str, str]) -> dict[str, str]:
+    """The documents with these skills, each with its dynamic model: one model is compiled."""
+    files = {f"{skill}.sd": f"project: gauge\n\ndynamic_model:\n{code}" for skill, code in skills.items()}
     return {"gauge.ef": ENVIRONMENT.format(belief=THREE_LEVELS), **files}
 
 
@@ -84,36 +70,22 @@ EXACT = gauge(
     {
         "plumb": (
             "__moduleResponse = read;\n"
-            "__observed.depth = AOS.SampleNormal(2.0 * state.level, 1.0 + 0.5 * state.level);\n",
-            mapping("float depth", skill="plumb"),
+            "__observed.depth = AOS.SampleNormal(2.0 * state.level, 1.0 + 0.5 * state.level);\n"
         ),
-        "feel": (
-            EVERY_DRAW,
-            mapping(
-                "double warmth",
-                "int shade",
-                "int kind",
-                "bool beeps",
-                responses=("read", "blind"),
-                skill="feel",
-            ),
-        ),
+        "feel": EVERY_DRAW,
         "scan": (
             "__moduleResponse = read;\n"
             "for (int i = 3; i >= 0; i--) __observed.beams[i] = AOS.SampleNormal(state.level * i, 1.5);\n"
-            "for (int i = 0; i < 1 + state.level; i++) __observed.hits.push_back(AOS.Bernoulli(0.4));\n",
-            mapping("float[] beams", "bool[] hits", skill="scan"),
+            "for (int i = 0; i < 1 + state.level; i++) __observed.hits.push_back(AOS.Bernoulli(0.4));\n"
         ),
         "sweep": (
             "__moduleResponse = read;\n"
-            "for (int i = 0; i < 100; i++) __observed.beams[i] = AOS.SampleNormal(state.level, 0.5);\n",
-            mapping("float[] beams", skill="sweep"),
+            "for (int i = 0; i < 100; i++) __observed.beams[i] = AOS.SampleNormal(state.level, 0.5);\n"
         ),
         "poke": (
             "if (state.level == 2) {\n    __moduleResponse = blind;\n    return;\n}\n"
             "__moduleResponse = read;\n"
-            "__observed.depth = AOS.SampleUniform(state.level, state.level + 0.5);\n",
-            mapping("float depth", responses=("read", "blind"), skill="poke"),
+            "__observed.depth = AOS.SampleUniform(state.level, state.level + 0.5);\n"
         ),
     }
 )
@@ -188,7 +160,6 @@ async def test_a_drifting_place_is_followed_as_by_a_kalman_filter():
         "state__.place = state.place + AOS.SampleNormal(0.3, 0.4);\n"
         "__moduleResponse = read;\n"
         "__observed.sight = AOS.SampleNormal(state__.place, 0.5);\n",
-        mapping("double sight"),
         belief="state.place = AOS.SampleNormal(0, 1);",
     )
     async with engine_of_text(files) as engine:
@@ -222,7 +193,7 @@ async def places_of(engine: Engine) -> tuple[NDArray[np.float64], NDArray[np.flo
 
 async def test_other_numbers_than_the_model_reports_leave_the_response_alone():
     async with engine_of_text(EXACT) as engine:
-        missing = await engine.update("poke", "read", {"depth": "null", "code": '"read"'}, {})
+        missing = await engine.update("poke", "read", {"depth": "null"}, {})
         assert not missing.is_impossible
         assert missing.remark == (
             "the numbers of poke do not count (depth = null): the model reports others with the response read"
@@ -242,8 +213,7 @@ async def test_other_numbers_than_the_model_reports_leave_the_response_alone():
 
 DEPTH_AND_BEAM = documents(
     "__moduleResponse = read;\n__observed.depth = AOS.SampleNormal(3.0 * state.level, 1.0);\n"
-    "__observed.beams.push_back(AOS.SampleUniform(0, 1));\n",
-    mapping("float depth", "float[] beams"),
+    "__observed.beams.push_back(AOS.SampleUniform(0, 1));\n"
 )
 
 
@@ -272,22 +242,17 @@ FAULTS = {
 }
 """Skills with a statement, what is wrong with it, and its line."""
 FAULTY = gauge(
-    {
-        skill: (
-            f"__moduleResponse = read;\n\n{statement}\n",
-            mapping("float depth", "bool[] beams", skill=skill),
-        )
-        for skill, (statement, _, _) in FAULTS.items()
-    }
+    {skill: f"__moduleResponse = read;\n\n{statement}\n" for skill, (statement, _, _) in FAULTS.items()}
 )
 
 
 @pytest.mark.parametrize("skill", FAULTS)
 async def test_a_report_without_a_density_is_a_fault_at_its_statement(skill):
     _, why, line = FAULTS[skill]
+    numbers = {"beams": [True]} if skill == "below" else {"depth": 0.5}
     async with engine_of_text(FAULTY) as engine:
         with pytest.raises(ModelError, match=why) as raised:
-            await engine.update(skill, "read", numbers={"depth": 0.5, "beams": [True]})
+            await engine.update(skill, "read", numbers=numbers)
     assert raised.value.code == "AOS215"
     (diagnostic,) = raised.value.diagnostics
     assert (diagnostic.span.file, diagnostic.span.line) == (f"{skill}.sd", line)
@@ -305,8 +270,7 @@ async def test_what_enumerates_observations_says_that_it_cannot():
 async def test_numbers_of_too_many_combinations_are_searched_in_beliefs():
     files = documents(
         "__moduleResponse = read;\n"
-        "for (int i = 0; i < 9; i++) __observed.beams[i] = AOS.SampleNormal(state.level, 1.5);\n",
-        mapping("float[] beams"),
+        "for (int i = 0; i < 9; i++) __observed.beams[i] = AOS.SampleNormal(state.level, 1.5);\n"
     )
     async with engine_of_text(files) as engine:
         plan = await engine.plan(seed=1, simulations=200, planner="auto")
@@ -316,13 +280,13 @@ async def test_numbers_of_too_many_combinations_are_searched_in_beliefs():
 
 async def test_numbers_of_many_values_have_the_quantiles_of_their_distribution():
     """The place that drifts has those of the normal distribution, for its belief is drawn."""
-    look = ("__moduleResponse = read;\n", mapping())
+    look = "__moduleResponse = read;\n"
     tenths = (
         "state.level = AOSUtils::SampleDiscrete(vector<double>(20, 0.05)); state.place = state.level / 10.0;"
     )
-    async with engine_of_text(documents(*look, belief=tenths)) as engine:
+    async with engine_of_text(documents(look, belief=tenths)) as engine:
         found = {each.variable: each.quantiles for each in (await engine.summary()).marginals}
         assert found == {"level": (0, 4, 9, 14, 18), "place": (0.0, 0.4, 0.9, 1.4, 1.8)}
     few = "state.level = AOSUtils::SampleDiscrete(vector<double>(9, 1.0)); state.place = state.level % 8;"
-    async with engine_of_text(documents(*look, belief=few)) as engine:
+    async with engine_of_text(documents(look, belief=few)) as engine:
         assert [each.quantiles for each in (await engine.summary()).marginals] == [(), ()]

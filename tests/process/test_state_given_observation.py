@@ -95,17 +95,8 @@ DRIVE_MAPPING = (
 )
 
 LOOK = "project: rover\n\ndynamic_model:\n__moduleResponse = state.is_mapped ? known : unknown;\n"
-LOOK_MAPPING = mapping_text(
-    "known: found", "unknown: True", project="rover", skill="look", reports={"found": "bool"}
-)
 
-ROVER = {
-    "rover.ef": ENVIRONMENT,
-    "drive.sd": DRIVE,
-    "drive.am": DRIVE_MAPPING,
-    "look.sd": LOOK,
-    "look.am": LOOK_MAPPING,
-}
+ROVER = {"rover.ef": ENVIRONMENT, "drive.sd": DRIVE, "drive.am": DRIVE_MAPPING, "look.sd": LOOK}
 SEEN = {
     "slipped": "false",
     "place": '"hill"',
