@@ -1,10 +1,11 @@
 """A program of a user's own, small: it serves the path /sense if the router listens, and answers nothing.
 
-It does not wait for the router: where none listens it ends with status 3.
+It does not wait for the router: where none listens it ends with status 3. After SIGUSR1 it serves nothing.
 """
 
 import json
 import os
+import signal
 import socket
 import sys
 import threading
@@ -32,4 +33,5 @@ with zenoh.open(zenoh.Config.from_json5(json.dumps(settings))) as session:
     name = os.environ["AOS_ADAPTER"]
     key = f"aos/{os.environ['AOS_ROBOT']}/serve/{name}/1/{session.zid()}/sense"
     token = session.liveliness().declare_token(key)
+    signal.signal(signal.SIGUSR1, lambda *_: token.undeclare())
     threading.Event().wait()

@@ -9,7 +9,7 @@ from aos_protocol.messages import BundleReport, DecisionRecord, MissionState, Sk
 
 
 class ServiceChanged(msgspec.Struct, frozen=True):
-    """A service is now `starting`, `ready`, `stopping` or `ended`; `after_s` counts from aos-up's start."""
+    """A service is now `starting`, `ready`, `silent`, `frozen`, `stopping` or `ended`, `after_s` aos-up."""
 
     service: str
     state: str

@@ -80,6 +80,16 @@ def test_the_doctor_says_what_is_there():
     assert "C++ compiler" in findings
 
 
+def test_the_doctor_says_where_the_loopback_interface_is_down():
+    alone = ("unshare", "--user", "--map-root-user", "--net")
+    if finished(*alone, "true").returncode:
+        pytest.skip("nobody gets a network of their own here")
+    done = finished(*alone, BIN / "aos", "doctor", "--json")
+    findings = {finding["subject"]: finding for finding in json.loads(done.stdout)}
+    assert findings["loopback"]["state"] == "absent"
+    assert findings["loopback"]["found"] == "127.0.0.1 cannot be reached: Network is unreachable"
+
+
 def test_the_doctor_says_what_a_deploy_file_lacks(tmp_path):
     deploy = tmp_path / "room.yaml"
     deploy.write_text(

@@ -1,3 +1,4 @@
+import asyncio
 import io
 import json
 import os
@@ -16,6 +17,7 @@ from places import ROOT
 from processes import HANG_S, finished
 
 from aos_deploy.export.run_bundle import write_bundle
+from aos_gateway.api.use import Use
 
 ERRAND = "deploy/bundles/errand"
 
@@ -99,9 +101,19 @@ def test_a_mission_tells_the_address_of_its_page(tmp_path):
 
 def test_a_gateway_ends_by_itself_once_nobody_looks(tmp_path):
     with gateway(tmp_path, "--unused", "0.2") as served:
-        with served.events("/v1/events"), pytest.raises(subprocess.TimeoutExpired):
-            served.process.wait(timeout=0.6)
         assert served.process.wait(timeout=HANG_S) == 0
+
+
+async def test_a_gateway_is_in_use_as_long_as_somebody_looks():
+    is_read = asyncio.Event()
+    use = Use(lambda *request: is_read.wait())
+    look = asyncio.create_task(use({}, None, None))
+    ended = asyncio.create_task(use.until_unused(0.01))
+    await asyncio.wait([ended], timeout=0.2)
+    assert not ended.done()
+    is_read.set()
+    async with asyncio.timeout(HANG_S):
+        await asyncio.gather(look, ended)
 
 
 def test_a_gateway_of_another_folder_shows_a_run_that_asks_for_its_page(tmp_path):

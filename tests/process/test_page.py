@@ -361,16 +361,24 @@ def test_long_names_are_told_whole_and_widen_no_screen(
             expect(page.locator(".expected li").last).to_have_text("all others120/120")
     for _ in screens(page):
         expect(page.locator(".value-name")).to_have_count(9)
-        assert page.locator(".value-name, .ribbon, .steps td").evaluate_all(is_cut) == 0
+        assert page.locator(".value-name, .ribbon, .ribbon-now dt, .steps td").evaluate_all(is_cut) == 0
         assert page.locator(".row-step").first.evaluate("each => each.offsetHeight") < 30
 
 
-def test_a_thousand_steps_are_loaded_with_little(browser: Browser, past: tuple[Gateway, str]):
+def test_a_thousand_steps_are_loaded_with_little_and_nothing_is_said_of_them_before(
+    browser: Browser, past: tuple[Gateway, str]
+):
     served, _ = past
     name = write_long_run(served.folder / "runs", 1000)
     page = opened(browser, served)
     page.goto("about:blank")
+    held: list[Route] = []
+    page.route("**/trace", lambda route: held.append(route))
     page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
+    expect(page.locator("main")).to_contain_text("The mission is being read")
+    expect(page.locator("main")).not_to_contain_text("yet")
+    expect(page.locator(".phase")).to_have_text("Reading")
+    held.pop().continue_()
     expect(page.locator(".stepper-place")).to_have_text("1000 of 1000")
     expect(page.locator("[aria-busy=true]")).to_have_count(0)
     sizes = "performance.getEntriesByType('resource').reduce((sum, each) => sum + each.transferSize, 0)"

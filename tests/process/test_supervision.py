@@ -11,6 +11,7 @@ from processes import HANG_S, descendants, has_listener, is_running, kill, until
 from ssh_host import stand_in
 from supervised_system import System, command, small
 
+from aos_deploy.processes import supervisor as supervisor_module
 from aos_deploy.processes.program import Program
 from aos_deploy.processes.restarts import STARTS
 from aos_deploy.processes.supervisor import FROZEN_S
@@ -183,6 +184,22 @@ async def test_a_frozen_command_on_another_host_starts_again_and_its_silence_is_
     assert silence is not None
     assert float(silence[1]) >= FROZEN_S
     assert [end.how for end in system.ends] == ["killed by SIGKILL"]
+
+
+async def test_a_command_that_runs_and_serves_nothing_is_told_and_can_be_ended(system: System, monkeypatch):
+    monkeypatch.setattr(supervisor_module, "FROZEN_S", 0.1)
+    async with (
+        asyncio.timeout(HANG_S),
+        system.up(command("python", "small_command.py", is_restarted=True)) as supervisor,
+    ):
+        await system.until("robot", "ready")
+        os.kill(descendants(supervisor.pids["robot"])[-1], signal.SIGUSR1)
+        await system.until("robot", "silent")
+        (told,) = (event.detail for event in system.events if event.state == "silent")
+        named = re.search(r"has served nothing .* kill (\d+) ends it", told)
+        assert named is not None
+        os.kill(int(named[1]), signal.SIGTERM)
+        await system.until("robot", "ready", times=2)
 
 
 async def test_a_service_that_does_not_end_is_told_before_it_is_killed(system: System):

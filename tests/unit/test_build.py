@@ -68,6 +68,20 @@ async def test_a_model_is_built_once_which_is_told_and_then_found(cache_dir: Pat
     assert (second.executable.parent / "model.cpp").read_text() == emitted.cpp
 
 
+async def test_who_waits_for_another_build_is_told_that_it_makes_the_engine_too(tmp_path):
+    emitted = emitted_skill("state__.total += 1;")
+    has_begun = asyncio.Event()
+    first = build(emitted, cache_dir=tmp_path, on_progress=lambda _: has_begun.set())
+    told: asyncio.Queue[str] = asyncio.Queue()
+    async with asyncio.TaskGroup() as tasks:
+        builds = [tasks.create_task(first)]
+        await has_begun.wait()
+        builds.append(tasks.create_task(build(emitted, cache_dir=tmp_path, on_progress=told.put_nowait)))
+        assert "which another process compiles, with the engine: once for all" in await told.get()
+        for each in builds:
+            each.cancel()
+
+
 async def test_two_builds_of_one_model_at_the_same_time_give_one_entry(cache_dir: Path):
     emitted = emitted_skill("state__.total += 1;")
     async with asyncio.TaskGroup() as tasks:

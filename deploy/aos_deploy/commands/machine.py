@@ -26,6 +26,7 @@ from aos_runtime.sandbox.support import sandbox_support
 _PACKAGES = ("eclipse-zenoh", "msgspec", "numpy", "tree-sitter", "rich")
 _SIMULATOR = "pybullet"
 _SUGGESTED_MEMORY_GB = 2.0
+_LOOPBACK_TIMEOUT_S = 2.0
 _VERSION_TIMEOUT_S = 60.0
 
 
@@ -146,10 +147,13 @@ def _loopback() -> Finding:
     try:
         with socket.create_server(("127.0.0.1", 0)) as server:
             port = server.getsockname()[1]
+            # Where the interface is down one can listen, and nobody comes through.
+            socket.create_connection(("127.0.0.1", port), _LOOPBACK_TIMEOUT_S).close()
     except OSError as error:
-        advice = "The bus needs a TCP port on 127.0.0.1"
-        return Finding("loopback", "missing", f"cannot listen: {error.strerror}", advice)
-    return Finding("loopback", "ok", f"can listen, port {port} was free")
+        advice = "`bus: {listen: ...}` and the page need it: ip link set lo up"
+        found = f"127.0.0.1 cannot be reached: {error.strerror or error}"
+        return Finding("loopback", "absent", found, advice)
+    return Finding("loopback", "ok", f"can be reached, port {port} was free")
 
 
 def _processors() -> Finding:

@@ -55,6 +55,7 @@ ROUTER = Program(name="router", module=ROUTER_MODULE, start_s=ROUTER_S, is_resta
 FROZEN_S = 5.0
 """A process of ours that is off the bus for so long, after it was ready, is killed."""
 
+_SILENT = "it runs, and has served nothing for {:g} s; kill {} ends it, and it is started again"
 _CANCEL_TIMEOUT_S = 2.5
 _TOLD_S = 1.0
 """An end that takes longer is told with what is waited for."""
@@ -290,7 +291,7 @@ class Supervisor:
             self._returns.expect(program) if it_comes else self._returns.settle(program.name)
 
     async def _kill_if_stopped(self, running: RunningProgram) -> None:
-        """Kills a program of the user's own that SIGSTOP has stopped. Others may serve less for a while."""
+        """Kills a program of the user's own that SIGSTOP has stopped. Others may serve less, or nothing."""
         child = running.child
         await asyncio.sleep(FROZEN_S)
         running.silence = None
@@ -298,6 +299,10 @@ class Supervisor:
             child.stdin.write(b"look\n")  # Its end says what was seen there.
         elif running.child is child and child.is_frozen():
             self._kill_frozen(running)
+        elif running.child is child and child.returncode is None:
+            name, paths = running.program.name, running.program.paths
+            if paths and self._serving.isdisjoint(paths):
+                self._changed(name, "silent", _SILENT.format(FROZEN_S, child.pid))
 
     async def _kill_if_frozen(self, running: RunningProgram) -> None:
         child, router = running.child, self._running[ROUTER.name]

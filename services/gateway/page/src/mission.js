@@ -1,7 +1,7 @@
 // One mission: where it is, what was decided, and the views below.
 import { Card, Findings, html, useEffect } from "./ui.js";
 import { addressOf, route, VIEWS } from "./route.js";
-import { alarms, at, close, connection, index, isGone, isLive, last, loadRecord, mission, open, pictures, points, problem, state, steps } from "./store.js";
+import { alarms, at, close, connection, index, isGone, isLive, isRead, last, loadRecord, mission, open, pictures, points, problem, state, steps } from "./store.js";
 import { chance, ending, phase } from "./format.js";
 import { Controls, LeftOut } from "./steering.js";
 import { Next } from "./next.js";
@@ -66,7 +66,7 @@ function Head() {
     </div>
     <div class="head-state">
       <p class=${`phase is-${ended ?? now?.phase ?? "waiting"}`} role="status">
-        <i class=${isOver || !view?.is_running ? "still-dot" : "pulse"}></i>${ended ? ending(ended) : phase(now?.phase ?? "waiting")}
+        <i class=${isOver || !view?.is_running ? "still-dot" : "pulse"}></i>${ended ? ending(ended) : isRead.value ? phase(now?.phase ?? "waiting") : "Reading"}
         ${!isLive.value && html`<span class="past">showing step ${at.value?.step}</span>`}
       </p>
       <p class="remark">${isGone.value ? GONE : now?.remark ?? ""}</p>

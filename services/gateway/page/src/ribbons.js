@@ -3,11 +3,12 @@ import { html, useState, useWidth, width } from "./ui.js";
 import { valueColours, textOn } from "./colours.js";
 import { chance } from "./format.js";
 import { Fan, nowOf, summaryOf } from "./fan.js";
-import { index, points, selectStep, steps } from "./store.js";
+import { index, isRead, points, selectStep, steps } from "./store.js";
 import { Cursor, placeOf } from "./timeline.js";
 
 const HEIGHT = 40;
 const SHOWN = 8;
+const TAIL = 6; // So many letters at the end of a value's name are always seen: long names differ there.
 const MARKED = 12; // Of a variable that moves more often no move is marked.
 const MOVED = 0.2; // A distribution that moves this far in total variation is marked.
 
@@ -26,7 +27,7 @@ export function Ribbons() {
       ${showsAll ? "Show fewer" : `Show ${told.length - SHOWN} more`}</button>`}
     ${still.length > 0 && html`<p class="still"><span>Certain throughout</span>
       ${still.slice(0, 40).map((row) => html`<span class="chip"><b>${row.name}</b> ${row.values[0]}</span>`)}</p>`}
-    ${!rows.length && html`<p class="empty">There is no belief yet.</p>`}
+    ${!rows.length && isRead.value && html`<p class="empty">There is no belief yet.</p>`}
   </div>`;
 }
 
@@ -48,7 +49,7 @@ function Ribbon({ row, all, size, now }) {
       <${Cursor} room=${room} height=${HEIGHT} head=${head} />
     </svg>
     <dl class=${row.isNumber ? "ribbon-now is-number" : "ribbon-now"}>
-      ${told.map(([what, each]) => html`<div><dt title=${what}>${!row.isNumber && html`<i style=${{ background: colours.get(what) }}></i>`}${what}</dt><dd>${each}</dd></div>`)}
+      ${told.map(([what, each]) => html`<div><dt title=${what}>${!row.isNumber && html`<i style=${{ background: colours.get(what) }}></i>`}<span>${what.slice(0, -TAIL)}</span>${what.slice(-TAIL)}</dt><dd>${each}</dd></div>`)}
     </dl>
   </div>`;
 }

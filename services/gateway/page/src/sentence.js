@@ -1,12 +1,12 @@
 // The decision of a step in one sentence, and what was expected and seen in another.
 import { html } from "./ui.js";
 import { chance, isNumber, number, percent, plain, plusMinus, seconds, signed, sized } from "./format.js";
-import { at, isGone, progress, record } from "./store.js";
+import { at, isGone, isRead, progress, record } from "./store.js";
 import { isAsked } from "./timeline.js";
 
 export function Sentence() {
   const step = at.value;
-  if (!step) return html`<p class="sentence muted">No decision has been made yet.</p>`;
+  if (!step) return html`<p class="sentence muted">${isRead.value ? "No decision has been made yet." : "The mission is being read…"}</p>`;
   return html`<div class="decision">
     <p class="sentence"><span class="action">${step.action}</span> ${worth(step)}</p>
     <p class="came">${came(step)}</p>

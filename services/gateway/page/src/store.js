@@ -25,6 +25,7 @@ export const loadedIn = signal(null);
 export const last = computed(() => steps.value.at(-1) ?? null);
 export const isGivenUp = computed(() => state.value?.phase === "waiting" && !!state.value.remark);
 export const isGone = computed(() => !!mission.value && !mission.value.is_running && state.value?.phase !== "ended");
+export const isRead = computed(() => loadedIn.value !== null);
 export const isLive = computed(() => route.value.step === null);
 export const at = computed(() => {
   const all = steps.value;

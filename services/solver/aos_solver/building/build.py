@@ -126,10 +126,7 @@ async def build(
         await work.make(staging)
 
     entry = await cache.fill(
-        names[kind],
-        make,
-        patience_s=_patience_s(compiler, deadline_s),
-        on_wait=lambda: on_progress(f"waiting for {emitted.project}, which another process compiles"),
+        names[kind], make, patience_s=_patience_s(compiler, deadline_s), on_wait=work.tell_wait
     )
     by_whom = "compiled" if made_here else "another process compiled"
     on_progress(f"{by_whom} {emitted.project} in {time.monotonic() - started_s:.1f} s")
@@ -158,6 +155,12 @@ class _Build(msgspec.Struct, frozen=True):
         state_bytes = self._state_bytes(staging / _OBJECT)
         engine = usual if state_bytes == STATE_BYTES[0] else await self._engine(self._ready_size(state_bytes))
         await self._link(staging, objects_of(usual, engine))
+
+    def tell_wait(self) -> None:
+        """Tells that another process makes the model, and whether it makes the engine first."""
+        is_long = self._ready_engine(STATE_BYTES[0]) is None
+        engine = ", with the engine: once for all models, which takes some minutes" if is_long else ""
+        self.on_progress(f"waiting for {self.emitted.project}, which another process compiles{engine}")
 
     def _ready_engine(self, state_bytes: int) -> Path | None:
         return self.cache.find(engine_name(self.compiler, state_bytes))
