@@ -69,6 +69,12 @@ def test_a_particle_holds_what_code_may_change(act, particle):
     assert particle_of(act) == particle
 
 
+def test_an_element_by_brackets_puts_itself_into_a_map():
+    ages = "state_variable: map<int, int> ages\n"
+    assert particle_of("__reward = state__.ages[3] + state__.row[0];", ages) == ["ages"]
+    assert particle_of("__reward = state__.ages.at(3);", ages) == []
+
+
 def test_what_an_initial_belief_sets_is_in_the_particle():
     assert particle_of("", "initial_belief:\nstate.lamp = On;\n") == ["lamp"]
 

@@ -267,6 +267,22 @@ def test_a_number_compared_with_a_text_in_a_mapping_is_told(rule, told):
 
 
 @pytest.mark.parametrize(
+    ("rule", "line", "told"),
+    [
+        ("place.isupper", "", "`place.isupper` is a function, and counts as true"),
+        ("place is 'far'", "", "`is` asks whether this is the very object 'far'"),
+        ("place", "place = __input.places.sort()", "`sort` changes the list and gives None"),
+        ("place.isupper() and place is not None", "far = __input.places; far.sort(key=place.count)", ""),
+    ],
+)
+def test_slips_of_python_are_told(rule, line, told):
+    mapping = MAPPING.replace("rule: True", f"rule: {rule}\nresponse: walked\nresponse_rule: True")
+    mapping += "\nlocal_variable: place\ntype: string\nfrom_ros_service_response: true\ncode:\n"
+    texts = [one.message for one in found(mapping=f"{mapping}place = __input.place\n{line}\n")]
+    assert texts == [told] * bool(told)
+
+
+@pytest.mark.parametrize(
     ("lines", "told"),
     [
         ("steps == 3", ["this line does nothing"]),
@@ -341,6 +357,38 @@ def test_a_real_number_that_rounding_makes_miss_a_decimal_is_told():
 )
 def test_code_that_does_nothing_or_loses_a_fraction_is_told(code, told):
     texts = finding_texts(skill=skill_after(code))
+    assert [text[: len(told)] for text in texts] == [told] * bool(told)
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("if (state.side == Left || Right) return;", "`Right` is compared with nothing here"),
+        ("bool wide = true; if (steps == 1 || state.side == Left && wide) return;", ""),
+        ("if (state.side != Left || state.side != Right) return;", "with what stands before it, this always"),
+        ("if (steps > 1 && steps == 2 && steps == 3) return;", "with what stands before it, this never"),
+        ("if (steps == 1 || steps == 2 || state.side != Left && steps != 3) return;", ""),
+        ("if (!steps == 3) return;", "`!` binds first: this compares `!steps`"),
+        ("bool wide = true; if (!wide == (steps == 3) || (!wide) == wide) return;", ""),
+        ("if (steps & 1 == 1) return;", "`==` binds first: this is `steps & (1 == 1)`"),
+        ("if (steps == 1 | (steps & 2) == 2) return;", ""),
+        ("__reward = -1 + steps ? 2 : 3;", "`+` binds before `?`: the condition is `-1 + steps`"),
+        ("AOS.Bernoulli(0.5);", "nothing takes what `AOS.Bernoulli` gives"),
+        ("state__.cells.empty();", "nothing takes what `state__.cells.empty` gives"),
+        ("state__.cells.clear(); bool wide = AOS.Bernoulli(0.5); if (wide) return;", ""),
+        ("for (auto cell : state__.cells) cell.x = 1;", "`cell` is a copy: this changes nothing"),
+        ("for (auto [key, n] : state__.table) ++n;", "`n` is a copy: this changes nothing"),
+        ("for (auto cell : state__.cells) { cell.x += 1; __reward += cell.x; }", ""),
+        ("for (auto& cell : state__.cells) cell.x = 1; for (auto c : state__.CellObjects) c->x = 1;", ""),
+    ],
+)
+def test_code_that_says_other_than_it_means_is_told(code, told):
+    environment = f"{SIDES}state_variable: vector<Cell> cells\nstate_variable: map<int, int> table\n"
+    texts = [
+        each.message
+        for each in found(environment=environment, skill=skill_after(code))
+        if each.code == "AOS149"
+    ]
     assert [text[: len(told)] for text in texts] == [told] * bool(told)
 
 

@@ -50,7 +50,7 @@ class TreeReader:
         self.idle_operators: list[Extent] = []
         self.idle_values: list[Extent] = []
         self.set_in_conditions: list[tuple[Extent, Extent]] = []
-        self.odd_parts: list[tuple[Extent, str, str]] = []
+        self.odd_parts: list[tuple[Extent, str, str, tuple[str, ...]]] = []
 
     def read(self, root: tree_sitter.Node) -> Cpp:
         self._stack.append((root, Access.READ))
@@ -88,7 +88,8 @@ class TreeReader:
             self.faults.append(
                 Fault(FaultKind.SYNTAX, f"unexpected {text[0][:40]!r}", self.extent(node), hint)
             )
-        self.odd_parts += [(self.extent(part), told, hint) for part, told, hint in odd_parts(node)]
+        for part, told, hint, names in odd_parts(node):
+            self.odd_parts.append((self.extent(part), told, hint, names))
         handler = _HANDLERS.get(node.type)
         if handler is None:
             self._push(node.children)

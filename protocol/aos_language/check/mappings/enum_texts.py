@@ -13,6 +13,7 @@ from aos_protocol.spelling import nearest, quoted
 
 _OF_NUMBERS = frozenset({"abs", "chr", "float", "int", "round"})
 _PYTHON = {"bool": bool, "int": int, "float": float, "double": float, "string": str}
+_GIVING_NONE = frozenset({"append", "extend", "reverse", "sort"})
 _STATUSES = ("succeeded", "refused", "failed", "timed_out", "cancelled", "unknown", "stopped")
 _ORDERINGS = (ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
@@ -41,6 +42,7 @@ def check_enum_texts(
         own |= {node.arg for node in nodes if isinstance(node, ast.arg)}
         known = {name: enum for name, enum in enums.items() if name not in own}
         known_plain = {name: kind for name, kind in plain.items() if name not in own}
+        tested = {id(part) for node in nodes for part in _tested(node)}
         for node in nodes:
             if isinstance(node, ast.Attribute) and isinstance(value := node.value, ast.Name):
                 kind = known_plain.get(value.id, "string" if value.id in known else "")
@@ -48,12 +50,21 @@ def check_enum_texts(
                     span = snippet.locate(value.lineno - lines_above, value.col_offset + 1)
                     message = f"`{value.id}` is of the type {kinds[value.id]}, which has no `{node.attr}`"
                     findings.warning("AOS149", message, span, f"Write `{value.id}` alone")
+                elif kind and id(node) in tested and callable(getattr(_PYTHON[kind], node.attr)):
+                    span = snippet.locate(value.lineno - lines_above, value.col_offset + 1)
+                    called = f"{value.id}.{node.attr}"
+                    message = f"`{called}` is a function, and counts as true"
+                    findings.warning("AOS149", message, span, f"Write `{called}()`")
                 compound = None if value.id in own else compounds.get(value.id)
                 if compound is not None and node.attr in {field.name for field in compound.fields}:
                     span = snippet.locate(value.lineno - lines_above, value.col_offset + 1)
                     message = f"`{value.id}` is a dict of the fields of {compound.name}"
                     findings.error("AOS121", message, span, f"Write `{value.id}['{node.attr}']`")
-            for name, message, hint in (*_mistakes(node, known, takes_all), *_unlike(node, known_plain)):
+            for name, message, hint in (
+                *_mistakes(node, known, takes_all),
+                *_unlike(node, known_plain),
+                *_slips(node),
+            ):
                 span = snippet.locate(name.lineno - lines_above, name.col_offset + 1)
                 findings.warning("AOS149", message, span, hint)
 
@@ -118,6 +129,28 @@ def _mistakes(
         and (name := name_of(node.slice)) is not None
     ):
         yield name, *_no_number(name.id, enums[name.id])
+
+
+def _tested(node: ast.AST) -> Iterator[ast.AST]:
+    """Yields the parts that a node compares or takes for true or false."""
+    match node:
+        case ast.Compare(left=left, comparators=others):
+            yield from (left, *others)
+        case ast.BoolOp(values=parts):
+            yield from parts
+        case ast.If(test=part) | ast.IfExp(test=part) | ast.Expression(body=part):
+            yield part
+        case ast.UnaryOp(op=ast.Not(), operand=part):
+            yield part
+
+
+def _slips(node: ast.AST) -> Iterator[tuple[ast.expr, str, str]]:
+    match node:
+        case ast.Compare(left=left, ops=[ast.Is() | ast.IsNot()], comparators=[ast.Constant(value=value)]):
+            if isinstance(value, str | int | float) and not isinstance(value, bool):
+                yield left, f"`is` asks whether this is the very object {value!r}", "Write `==` or `!=`"
+        case ast.Assign(value=ast.Call(func=ast.Attribute(attr=name)) as call) if name in _GIVING_NONE:
+            yield call, f"`{name}` changes the list and gives None", "Call it in a line of its own"
 
 
 def _unlike(node: ast.AST, kinds: dict[str, str]) -> Iterator[tuple[ast.expr, str, str]]:

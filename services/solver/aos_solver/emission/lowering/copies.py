@@ -14,7 +14,7 @@ from aos_language.cpp.keywords import DRAW_SOURCES
 from aos_language.cpp.snippets import Access, Call, Cpp, DeclarationKind, Extent, Mention, strip_comments
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_protocol.documents import Assignment, Environment, SkillModel
-from aos_solver.emission.lowering.writes import LAMBDA, may_refer, value_types
+from aos_solver.emission.lowering.writes import LAMBDA, holding_maps, may_insert, may_refer, value_types
 
 _WHOLE_STATE = "*"
 _RESULTS = frozenset({"__reward", "__moduleResponse", "__moduleResponseStr"})
@@ -45,12 +45,13 @@ class _Use(msgspec.Struct, frozen=True):
 
 
 class _Names(msgspec.Struct, frozen=True):
-    """Shared functions that may give a handle to what they are given, functions that give plain values, and
-    the words of types of such values."""
+    """Shared functions that may give a handle to what they are given, functions that give plain values, the
+    words of types of such values, and the variables that hold maps."""
 
     giving_handles: frozenset[str]
     giving_values: frozenset[str]
     types: frozenset[str]
+    maps: frozenset[str]
 
 
 class _Uses(msgspec.Struct, frozen=True):
@@ -65,7 +66,8 @@ def copies_of(model: SkillModel, environment: Environment) -> Copies:
     """Returns the copies that a step of this skill needs; models with one state have no copies."""
     dynamic = model.dynamic_model
     shared = shared_code_of(environment)
-    names = _Names(shared.changing, _GIVING_VALUES | shared.reading, value_types(environment))
+    giving = _GIVING_VALUES | shared.reading
+    names = _Names(shared.changing, giving, value_types(environment), holding_maps(environment))
     extrinsic = environment.extrinsic_changes
     if all(cpp.is_empty for _, cpp in snippets_of(extrinsic)):
         return Copies(_reads_changed(dynamic, ("state", "state_"), "state__", names), keeps_state_=False)
@@ -127,7 +129,9 @@ def _uses(section: tuple[Assignment, ...], older: tuple[str, ...], newer: str, n
                 is_bound = any(_covers(extent, mention.extent) for extent in bound)
                 is_handle = has_lambda or is_bound or _makes_handle(mention)
                 reads.append(_Use(variable, number, mention.extent, is_handle=is_handle))
-            elif mention.path[0] == newer and not _only_reads(mention, cpp, bound):
+            elif mention.path[0] == newer and (
+                may_insert(mention, names.maps) or not _only_reads(mention, cpp, bound)
+            ):
                 writes.append(_Use(variable, number, mention.extent, mention.assigned))
     return _Uses(reads, writes, frozenset(unordered))
 

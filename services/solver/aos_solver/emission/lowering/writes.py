@@ -43,6 +43,25 @@ def value_types(environment: Environment) -> frozenset[str]:
     return _VALUES | {each.name for each in environment.enums} | {each.name for each in environment.compounds}
 
 
+def holding_maps(environment: Environment) -> frozenset[str]:
+    """The variables with a map, also in a field."""
+    words, types = re.compile(r"\w+"), {"map", "unordered_map"}
+    for _ in environment.compounds:
+        for each in environment.compounds:
+            if any(not types.isdisjoint(words.findall(field.type)) for field in each.fields):
+                types.add(each.name)
+    return frozenset(
+        variable.name
+        for variable in environment.variables
+        if variable.key_types or not types.isdisjoint(words.findall(variable.type))
+    )
+
+
+def may_insert(mention: Mention, maps: frozenset[str]) -> bool:
+    """Returns whether this is an element by `[]` of what holds a map: where there is none, it is put in."""
+    return not maps.isdisjoint(mention.path[1:2]) and "[]" in mention.path
+
+
 def may_refer(type_text: str, values: frozenset[str]) -> bool:
     """Returns whether a variable of the type may refer to what it starts from."""
     words = re.findall(r"[A-Za-z_]\w*", type_text)
@@ -60,6 +79,7 @@ class Changes:
         self.value_types: set[str] = set()
         self._compounds = frozenset(compound.name for compound in environment.compounds)
         self._values = value_types(environment)
+        self._maps = holding_maps(environment)
         self._shared = shared_code_of(environment)
         self._inside = list(_passed_to_functions(self._shared.cpp, self._shared.reading))
         for mention in self._shared.cpp.mentions:
@@ -81,6 +101,8 @@ class Changes:
                 continue
             if len(mention.path) > 1:
                 self._read_list(mention.path[1])
+                if mention.path[0] in copies and may_insert(mention, self._maps):
+                    self._change(mention)
             if mention.path[0] in copies and (mention.access in _CHANGING or _is_in(mention, passed_on)):
                 self._change(mention)
             elif mention.path[0] in copies and len(mention.path) == 1:
