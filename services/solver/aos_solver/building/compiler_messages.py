@@ -121,17 +121,7 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
         if _NO_VALUE.fullmatch(text) and message.file.endswith(source_name):
             before = lines[message.line - 1][: message.column - 1].decode("utf-8", "replace")
             text = next((f"a value is missing behind `{m[0]}`" for m in _OPERATOR.finditer(before)), text)
-        if name in emitted.layout.shapes:
-            hint = f"Did you mean `state.{name}`?"
-        elif not _may_be_meant(hint, emitted):
-            hint = ""
-        if not hint and name:
-            of_python = f"C++ writes `{_OF_PYTHON[name]}`" if name in _OF_PYTHON else ""
-            if "_" in name and any(name in words for words in GRAMMARS.values()):
-                of_python = f"A section begins with its word and a colon: `{name}:`"
-            hint = of_python or did_you_mean(name, sorted(emitted.names - {name}))
-        diagnostic = Diagnostic(Severity.ERROR, "AOS201", text, span, hint)
-        diagnostics.append(diagnostic)
+        diagnostics.append(Diagnostic(Severity.ERROR, "AOS201", text, span, _advice(name, hint, emitted)))
     return CompilerReport(
         tuple(_without_consequences(_without_repeats(diagnostics), emitted)), tuple(outside)
     )
@@ -140,6 +130,19 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
 def _declared_with(type_name: str, code: str) -> list[str]:
     """The name that code declares, which begins with the name of its type."""
     return re.findall(rf"^{type_name}(?:<.*?>)?[&*\s]+(\w+)\s*[=;{{]", code)
+
+
+def _advice(name: str, hint: str, emitted: EmittedModel) -> str:
+    """Returns what to write in place of an undeclared name; `hint` is what the message says itself."""
+    if name in emitted.layout.shapes:
+        return f"Did you mean `state.{name}`?"
+    if hint and _may_be_meant(hint, emitted):
+        return hint
+    if "_" in name and any(name in words for words in GRAMMARS.values()):
+        return f"A section begins with its word and a colon: `{name}:`"
+    if name in _OF_PYTHON:
+        return f"C++ writes `{_OF_PYTHON[name]}`"
+    return did_you_mean(name, sorted(emitted.names - {name})) if name else ""
 
 
 def _may_be_meant(hint: str, emitted: EmittedModel) -> bool:
