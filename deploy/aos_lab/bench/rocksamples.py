@@ -1,17 +1,16 @@
 """The RockSample bundles, which differ only by their layout: `python -m aos_lab.bench.rocksamples FOLDER`.
 
-The environment comes from `rocksample.ef.template`; the skills are those of RockSample(7, 8), which is kept.
+All are RockSample(7, 8), which is kept, with another layout.
 """
 
 import random
+import re
 import sys
 from pathlib import Path
-from string import Template
 
 from aos_deploy.places import shipped
 
-BENCH = shipped("deploy/bundles/bench")
-SKILLS_OF = "rocksample-7-8"
+KEPT = shipped("deploy/bundles/bench/rocksample-7-8")
 
 
 def drawn_layout(size: int, rocks: int, seed: int) -> tuple[int, int, list[tuple[int, int]]]:
@@ -34,26 +33,20 @@ LAYOUTS = {
 }
 
 
-def environment(size: int, start_y: int, rocks: list[tuple[int, int]]) -> str:
-    """The environment document of a layout."""
-    return Template((BENCH / "rocksample.ef.template").read_text()).substitute(
-        size=size,
-        cells=size**2,
-        squares=2 * (size - 1) ** 2 + 1,
-        start_y=start_y,
-        rocks=len(rocks),
-        rock_x=", ".join(str(x) for x, _ in rocks),
-        rock_y=", ".join(str(y) for _, y in rocks),
-    )
-
-
 def bundle(name: str) -> dict[str, str]:
     """The documents of a layout, by the names of their files."""
-    skills = sorted((BENCH / SKILLS_OF).glob("*.[sa][dm]"))
-    return {
-        "rocksample.ef": environment(*LAYOUTS[name]),
-        **{document.name: document.read_text() for document in skills},
+    width, start_y, rocks = LAYOUTS[name]
+    layout = {
+        "constexpr int width = ": f"{width}, start_y = {start_y}, rocks = {len(rocks)}",
+        "constexpr int cells = ": f"{width**2}, squares = {2 * (width - 1) ** 2 + 1}",
+        "state.rock_x = ": f"{{{', '.join(str(x) for x, _ in rocks)}}}",
+        "state.rock_y = ": f"{{{', '.join(str(y) for _, y in rocks)}}}",
     }
+    documents = {document.name: document.read_text() for document in KEPT.iterdir()}
+    for place, value in layout.items():
+        line = re.compile(f"^{re.escape(place)}.*;$", re.MULTILINE)
+        documents["rocksample.ef"] = line.sub(f"{place}{value};", documents["rocksample.ef"])
+    return documents
 
 
 def write_bundle(name: str, folder: Path) -> None:
