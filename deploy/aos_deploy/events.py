@@ -9,7 +9,10 @@ from aos_protocol.messages import BundleReport, DecisionRecord, MissionState, Sk
 
 
 class ServiceChanged(msgspec.Struct, frozen=True):
-    """A service is now `starting`, `ready`, `silent`, `frozen`, `stopping` or `ended`, `after_s` aos-up."""
+    """A service is now `starting`, `ready`, `silent`, `frozen`, `stopping` or `ended`.
+
+    `after_s` counts from aos-up's start.
+    """
 
     service: str
     state: str

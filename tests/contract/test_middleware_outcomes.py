@@ -168,6 +168,7 @@ async def test_a_number_that_is_not_finite_is_told_once_for_each_field(system: S
         [],
         ["last of the result of sense is nan"],
     ]
+    assert ["x != x" in notice for notice in said[0]] == [True, True, False]
 
 
 async def test_holding_is_decided_from_the_published_gap_and_forces(system: System):

@@ -8,6 +8,7 @@ import msgspec
 
 from aos_deploy.deployment.typed import read_structure
 from aos_deploy.deployment.yaml_source import YamlList, YamlMap, YamlNode, read_yaml
+from aos_deploy.played.faults import PlayedFaults
 from aos_lab.trials.claim_names import ClaimNames, project_of_setting
 from aos_lab.trials.claims import Claim, has_check
 from aos_lab.trials.setting import Setting
@@ -119,14 +120,15 @@ def _read(path: Path, kind: type[F], entries: str) -> F:
 
 def _check(part: Part, node: YamlNode | None, findings: Findings, path: str) -> None:
     listed = _entry(node, "claims")
-    places = [item.span for item in listed.items] if isinstance(listed, YamlList) else []
+    items = listed.items if isinstance(listed, YamlList) else ()
     if not part.claims:
         where = node.span if node is not None else Span(path)
         findings.error("AOS105", f"{path} claims nothing", where, "Give it a list of `claims`")
-    for claim, where in zip(part.claims, places, strict=False):
-        if not has_check(claim):
+    for claim, item in zip(part.claims, items, strict=False):
+        is_misspelt = isinstance(item, YamlMap) and not item.entries.keys() <= {*Claim.__struct_fields__}
+        if not has_check(claim) and not is_misspelt:
             hint = "Give it a check, such as first, never, order or endings"
-            findings.error("AOS105", f"nothing is checked by the claim {claim.says!r}", where, hint)
+            findings.error("AOS105", f"nothing is checked by the claim {claim.says!r}", item.span, hint)
 
 
 def _check_names(part: Part, node: YamlNode | None, findings: Findings, project: Project | None) -> None:
@@ -135,6 +137,12 @@ def _check_names(part: Part, node: YamlNode | None, findings: Findings, project:
         names = ClaimNames(project, part.by, findings)
         for claim, item in zip(part.claims, listed.items, strict=False):
             names.check(claim, item.span)
+    faults = _entry(node, "faults")
+    if project is not None and faults is not None and part.by == "system-model":
+        try:
+            PlayedFaults(part.faults).check(skill.name for skill in project.skills)
+        except DeployError as error:
+            findings.error("AOS106", error.message, faults.span, error.hint)
 
 
 def _entry(node: YamlNode | None, key: str) -> YamlNode | None:

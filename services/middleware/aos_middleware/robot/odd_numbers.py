@@ -4,6 +4,9 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+_NAN = "NaN compares as false in rules: tell it apart in a first rule, as by `x != x`"
+_INFINITE = "It lies beyond all limits of rules: tell it apart in a first rule, as by `abs(x) > 1e300`"
+
 
 class OddNumbers:
     """Tells once of each field of results and messages that was NaN or infinite.
@@ -20,7 +23,7 @@ class OddNumbers:
         for field, number in _not_finite(fields):
             if (what, field) not in self._told:
                 self._told.add((what, field))
-                hint = "NaN compares as false in rules: tell it apart in a first rule, as by `x != x`"
+                hint = _NAN if math.isnan(number) else _INFINITE
                 notices.append(f"{field} of {what} is {number}, no finite number. {hint}")
         return notices
 
