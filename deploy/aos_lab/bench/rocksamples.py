@@ -45,7 +45,8 @@ def bundle(name: str) -> dict[str, str]:
     documents = {document.name: document.read_text() for document in KEPT.iterdir()}
     for place, value in layout.items():
         line = re.compile(f"^{re.escape(place)}.*;$", re.MULTILINE)
-        documents["rocksample.ef"] = line.sub(f"{place}{value};", documents["rocksample.ef"])
+        documents["rocksample.ef"], found = line.subn(f"{place}{value};", documents["rocksample.ef"])
+        assert found == 1, f"the layout of {KEPT.name} has no single line `{place}...`"
     return documents
 
 
