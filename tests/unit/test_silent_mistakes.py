@@ -364,31 +364,24 @@ def test_code_that_does_nothing_or_loses_a_fraction_is_told(code, told):
     ("code", "told"),
     [
         ("if (state.side == Left || Right) return;", "`Right` is compared with nothing here"),
-        ("bool wide = true; if (steps == 1 || state.side == Left && wide) return;", ""),
         ("if (state.side != Left || state.side != Right) return;", "with what stands before it, this always"),
         ("if (steps > 1 && steps == 2 && steps == 3) return;", "with what stands before it, this never"),
-        ("if (steps == 1 || steps == 2 || state.side != Left && steps != 3) return;", ""),
         ("if (!steps == 3) return;", "`!` binds first: this compares `!steps`"),
-        ("bool wide = true; if (!wide == (steps == 3) || (!wide) == wide) return;", ""),
         ("if (steps & 1 == 1) return;", "`==` binds first: this is `steps & (1 == 1)`"),
-        ("if (steps == 1 | (steps & 2) == 2) return;", ""),
         ("__reward = -1 + steps ? 2 : 3;", "`+` binds before `?`: the condition is `-1 + steps`"),
         ("AOS.Bernoulli(0.5);", "nothing takes what `AOS.Bernoulli` gives"),
         ("state__.cells.empty();", "nothing takes what `state__.cells.empty` gives"),
-        ("state__.cells.clear(); bool wide = AOS.Bernoulli(0.5); if (wide) return;", ""),
         ("for (auto cell : state__.cells) cell.x = 1;", "`cell` is a copy: this changes nothing"),
         ("for (auto [key, n] : state__.table) ++n;", "`n` is a copy: this changes nothing"),
-        ("for (auto cell : state__.cells) { cell.x += 1; __reward += cell.x; }", ""),
-        ("for (auto& cell : state__.cells) cell.x = 1; for (auto c : state__.CellObjects) c->x = 1;", ""),
+        ("bool b = steps == 1 || steps == 2 && state.side != Left; if (!b == b || b) return;", ""),
+        ("if (steps == 1 | (steps & 2) == 2 && AOS.Bernoulli(0.5)) state__.cells.clear();", ""),
+        ("for (auto c : state__.cells) __reward += c.x++; for (auto& c : state__.cells) c.x = 1;", ""),
     ],
 )
 def test_code_that_says_other_than_it_means_is_told(code, told):
     environment = f"{SIDES}state_variable: vector<Cell> cells\nstate_variable: map<int, int> table\n"
-    texts = [
-        each.message
-        for each in found(environment=environment, skill=skill_after(code))
-        if each.code == "AOS149"
-    ]
+    all_told = found(environment=environment, skill=skill_after(code))
+    texts = [each.message for each in all_told if each.code == "AOS149"]
     assert [text[: len(told)] for text in texts] == [told] * bool(told)
 
 

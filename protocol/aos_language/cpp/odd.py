@@ -39,7 +39,7 @@ def odd_parts(node: tree_sitter.Node) -> Iterator[Odd]:
         body = node.child_by_field_name("consequence")
         if body is not None and text_of(body) == ";":
             yield body, "this semicolon ends the `if`", "Take it out", ()
-    elif node.type == "case_statement" and _is_case(node.next_named_sibling):
+    elif node.type == "case_statement" and getattr(node.next_named_sibling, "type", "") == node.type:
         parts = [part.type for part in below(node)]
         if ";" in parts and "fall" not in text_of(node) and not {*_LEAVING, "ERROR"} & {*parts}:
             hint = "Write `break;` at its end, or `[[fallthrough]];` where this is meant"
@@ -68,10 +68,6 @@ def _is_only_set(part: tree_sitter.Node, *, whole: bool) -> bool:
         return False
     is_set = above.type in ("assignment_expression", "update_expression")
     return whole and is_set and part in (above.children[0], above.child_by_field_name("argument"))
-
-
-def _is_case(node: tree_sitter.Node | None) -> bool:
-    return node is not None and node.type == "case_statement"
 
 
 def _calculated(node: tree_sitter.Node) -> Iterator[Odd]:
