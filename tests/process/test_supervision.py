@@ -196,9 +196,8 @@ async def test_a_command_that_runs_and_serves_nothing_is_told_and_can_be_ended(s
         os.kill(descendants(supervisor.pids["robot"])[-1], signal.SIGUSR1)
         await system.until("robot", "silent")
         (told,) = (event.detail for event in system.events if event.state == "silent")
-        named = re.search(r"has served nothing .* kill (\d+) ends it", told)
-        assert named is not None
-        os.kill(int(named[1]), signal.SIGTERM)
+        (pid,) = re.findall(r"has served nothing .* kill (\d+) ends it", told)
+        os.kill(int(pid), signal.SIGTERM)
         await system.until("robot", "ready", times=2)
 
 
