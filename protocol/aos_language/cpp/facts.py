@@ -99,13 +99,22 @@ class Declaration(msgspec.Struct, frozen=True):
     initial: Extent | None = None
 
 
+class OddPart(msgspec.Struct, frozen=True):
+    """Code that does other than it seems to say, as `1/2`, where all names `of_enums` are values of enums."""
+
+    extent: Extent
+    message: str
+    hint: str
+    of_enums: tuple[str, ...]
+
+
 class Cpp(msgspec.Struct, frozen=True):
     """A snippet as read; everything in text order.
 
     `idle_operators` are `==` of statements that only compare, the comma before a number that does nothing,
     as in `x = 1,5;`, and the `+` of `x =+ 1;`. `idle_values` are other statements that only have a value, as
-    `x - 1;`. `set_in_conditions` are what conditions set, with the sign: `if (x = 1)`. `odd_parts` are what
-    does other than it seems to say, as `1/2`, with a message, a hint and names: where all are of enums.
+    `x - 1;`. `set_in_conditions` are what conditions set, with the sign: `if (x = 1)`. `odd_parts` do
+    other than they seem to say.
     """
 
     code: str
@@ -121,7 +130,7 @@ class Cpp(msgspec.Struct, frozen=True):
     idle_operators: tuple[Extent, ...] = ()
     idle_values: tuple[Extent, ...] = ()
     set_in_conditions: tuple[tuple[Extent, Extent], ...] = ()
-    odd_parts: tuple[tuple[Extent, str, str, tuple[str, ...]], ...] = ()
+    odd_parts: tuple[OddPart, ...] = ()
 
     @property
     def complete(self) -> str:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import tree_sitter
 
@@ -17,33 +18,40 @@ _GIVING = re.compile(
 _OF_STATE = re.compile(r"\*?state_*\.")
 _LEAVING = ("break_statement", "continue_statement", "goto_statement", "return_statement", "throw_statement")
 
-Odd = tuple[tree_sitter.Node, str, str, tuple[str, ...]]
+
+class Odd(NamedTuple):
+    """An `OddPart` at its place in the tree."""
+
+    place: tree_sitter.Node
+    message: str
+    hint: str
+    of_enums: tuple[str, ...] = ()
 
 
 def odd_parts(node: tree_sitter.Node) -> Iterator[Odd]:
-    """Yields the place, a message, a hint, and names: it is sure where they are values of enums."""
+    """Yields what is odd about a node, those below it apart."""
     if node.type == "binary_expression" and len(node.children) == 3:
         yield from _calculated(node)
     elif node.type == "conditional_expression":
         condition = node.named_children[0]
         if condition.type == "binary_expression" and operator_of(condition) == "+":
             told = f"`+` binds before `?`: the condition is `{text_of(condition)}`"
-            yield condition, told, "Put what stands behind the `+` in brackets", ()
+            yield Odd(condition, told, "Put what stands behind the `+` in brackets")
     elif node.type == "expression_statement" and node.named_children:
         whole = node.named_children[0]
         if _GIVING.fullmatch(function := field_text(whole, "function")):
-            yield whole, f"nothing takes what `{function}` gives", f"Write `NAME = {text_of(whole)};`", ()
+            yield Odd(whole, f"nothing takes what `{function}` gives", f"Write `NAME = {text_of(whole)};`")
     elif node.type == "for_range_loop":
         yield from _copied(node)
     elif node.type == "if_statement" and node.child_by_field_name("alternative") is None:
         body = node.child_by_field_name("consequence")
         if body is not None and text_of(body) == ";":
-            yield body, "this semicolon ends the `if`", "Take it out", ()
+            yield Odd(body, "this semicolon ends the `if`", "Take it out")
     elif node.type == "case_statement" and getattr(node.next_named_sibling, "type", "") == node.type:
         parts = [part.type for part in below(node)]
         if ";" in parts and "fall" not in text_of(node) and not {*_LEAVING, "ERROR"} & {*parts}:
             hint = "Write `break;` at its end, or `[[fallthrough]];` where this is meant"
-            yield node.children[0], "what stands here goes on into the next `case`", hint, ()
+            yield Odd(node.children[0], "what stands here goes on into the next `case`", hint)
 
 
 def _copied(loop: tree_sitter.Node) -> Iterator[Odd]:
@@ -55,7 +63,9 @@ def _copied(loop: tree_sitter.Node) -> Iterator[Odd]:
     for name in declared.named_children if is_bound else [declared]:
         used = [part for part in below(loop.child_by_field_name("body")) if text_of(part) == text_of(name)]
         if used and all(_is_only_set(part, whole=is_bound) for part in used):
-            yield used[0], f"`{text_of(name)}` is a copy: this changes nothing", "Declare it with `auto&`", ()
+            yield Odd(
+                used[0], f"`{text_of(name)}` is a copy: this changes nothing", "Declare it with `auto&`"
+            )
 
 
 def _is_only_set(part: tree_sitter.Node, *, whole: bool) -> bool:
@@ -76,18 +86,18 @@ def _calculated(node: tree_sitter.Node) -> Iterator[Odd]:
     if operator == "/" and _WHOLE.fullmatch(first) and _WHOLE.fullmatch(second) and int(second):
         if int(first) % int(second):
             text = f"`{text_of(node)}` is {int(first) // int(second)} in C++"
-            yield node, text, f"Write `{first}.0 / {second}`", ()
+            yield Odd(node, text, f"Write `{first}.0 / {second}`")
     elif operator == "^" and second in ("2", "3"):
-        yield sign, "`^` is no power in C++", f"Write `std::pow({first}, {second})`", ()
+        yield Odd(sign, "`^` is no power in C++", f"Write `std::pow({first}, {second})`")
     elif left.type == "binary_expression" and any({operator, operator_of(left)} <= each for each in _ORDERS):
         hint = f"Write `{first} && {text_of(left.children[2])} {operator} {second}`"
-        yield node, f"this compares the truth of `{first}` with `{second}`", hint, ()
+        yield Odd(node, f"this compares the truth of `{first}` with `{second}`", hint)
     elif operator in _COMPARING and operator_of(left) == "!" and right.type in _FIXED:
         hint = f"Write `!({first[1:]} {operator} {second})`"
-        yield node, f"`!` binds first: this compares `{first}`", hint, _names(right)
+        yield Odd(node, f"`!` binds first: this compares `{first}`", hint, _names(right))
     elif operator in "&|" and operator_of(right) in _COMPARING and right.children[0].type == "number_literal":
         hint = f"Write `({first} {operator} {text_of(right.children[0])})`"
-        yield node, f"`{operator_of(right)}` binds first: this is `{first} {operator} ({second})`", hint, ()
+        yield Odd(node, f"`{operator_of(right)}` binds first: this is `{first} {operator} ({second})`", hint)
     elif operator in ("&&", "||"):
         while operator_of(left) == operator:
             left = left.children[2]
@@ -99,13 +109,15 @@ def _joined(left: tree_sitter.Node, operator: str, right: tree_sitter.Node) -> I
     subject, sign, value = map(text_of, left.children)
     if right.type in _FIXED:
         hint = f"Write `{subject} {sign} {text_of(right)}`"
-        yield right, f"`{text_of(right)}` is compared with nothing here", hint, _names(right)
+        yield Odd(right, f"`{text_of(right)}` is compared with nothing here", hint, _names(right))
     elif operator_of(right) == sign == ("!=" if operator == "||" else "=="):
         given = left.children[2], right.children[2]
         are_fixed = {part.type for part in given} <= {*_FIXED} and value != text_of(given[1])
         if are_fixed and text_of(right.children[0]) == subject and "(" not in subject:
             told, other = ("always", "&&") if operator == "||" else ("never", "||")
-            yield right, f"with what stands before it, this {told} holds", f"Write `{other}`", _names(*given)
+            yield Odd(
+                right, f"with what stands before it, this {told} holds", f"Write `{other}`", _names(*given)
+            )
 
 
 def _names(*parts: tree_sitter.Node) -> tuple[str, ...]:

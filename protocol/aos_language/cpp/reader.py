@@ -17,6 +17,7 @@ from aos_language.cpp.facts import (
     DeclarationKind,
     Element,
     Mention,
+    OddPart,
 )
 from aos_language.cpp.idle import idle_parts, is_turned
 from aos_language.cpp.nodes import below, child_of, names_of, operator_of, picks_member, text_of
@@ -50,7 +51,7 @@ class TreeReader:
         self.idle_operators: list[Extent] = []
         self.idle_values: list[Extent] = []
         self.set_in_conditions: list[tuple[Extent, Extent]] = []
-        self.odd_parts: list[tuple[Extent, str, str, tuple[str, ...]]] = []
+        self.odd_parts: list[OddPart] = []
 
     def read(self, root: tree_sitter.Node) -> Cpp:
         self._stack.append((root, Access.READ))
@@ -69,7 +70,7 @@ class TreeReader:
             idle_operators=tuple(sorted(self.idle_operators, key=lambda extent: extent.start)),
             idle_values=tuple(sorted(self.idle_values, key=lambda extent: extent.start)),
             set_in_conditions=tuple(sorted(self.set_in_conditions, key=lambda pair: pair[0].start)),
-            odd_parts=tuple(sorted(self.odd_parts, key=lambda part: part[0].start)),
+            odd_parts=tuple(sorted(self.odd_parts, key=_by_start)),
         )
 
     def _visit(self, node: tree_sitter.Node, access: Access) -> None:
@@ -88,8 +89,8 @@ class TreeReader:
             self.faults.append(
                 Fault(FaultKind.SYNTAX, f"unexpected {text[0][:40]!r}", self.extent(node), hint)
             )
-        for part, told, hint, names in odd_parts(node):
-            self.odd_parts.append((self.extent(part), told, hint, names))
+        for odd in odd_parts(node):
+            self.odd_parts.append(OddPart(self.extent(odd.place), odd.message, odd.hint, odd.of_enums))
         handler = _HANDLERS.get(node.type)
         if handler is None:
             self._push(node.children)
@@ -429,7 +430,7 @@ def _within_brackets(initial: tree_sitter.Node | None) -> tree_sitter.Node | Non
     return initial.named_children[0] if initial.named_child_count == 1 else initial
 
 
-def _by_start(item: Mention | Call | Declaration | Fault) -> int:
+def _by_start(item: Mention | Call | Declaration | OddPart | Fault) -> int:
     return item.extent.start
 
 

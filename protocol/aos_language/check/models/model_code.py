@@ -178,9 +178,9 @@ class _BlockCheck:
         for value in self._cpp.idle_values:
             hint = f"To set a variable, write `NAME = {self._cpp.code[value.start : value.end]};`"
             self._findings.warning("AOS149", "this statement does nothing", self._span(value), hint)
-        for part, told, hint, names in self._cpp.odd_parts:
-            if {*names} <= {*self._scope.enum_values} - {*self._locals}:
-                self._findings.warning("AOS149", told, self._span(part), hint)
+        for odd in self._cpp.odd_parts:
+            if {*odd.of_enums} <= {*self._scope.enum_values} - {*self._locals}:
+                self._findings.warning("AOS149", odd.message, self._span(odd.extent), odd.hint)
 
     def _check_conditions(self) -> None:
         """A condition that sets something; where it may not write that, this has been told already."""
