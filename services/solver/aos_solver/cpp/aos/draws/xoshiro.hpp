@@ -20,6 +20,9 @@ class Xoshiro {
     }
   }
 
+  // Whether the same comes next.
+  bool operator==(const Xoshiro&) const = default;
+
   std::uint64_t bits() {
     const std::uint64_t result = std::rotl(words_[0] + words_[3], 23) + words_[0];
     const std::uint64_t shifted = words_[1] << 17;

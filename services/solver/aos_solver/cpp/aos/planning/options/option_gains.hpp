@@ -115,6 +115,7 @@ class OptionGains {
       goes_on_[option * states_ + k] += outcome.goes_on / tries;
       if (outcome.goes_on == 0) ends_[option] = true;
       else if (outcome.earned > 0) earns_without_end_[option] = true;
+      if (are_alike<Model>(start, state)) continue;
       cells.write(state, after_.data());
       for (std::size_t i = 0; i < cells.size(); ++i) {
         if (before_[i] != after_[i]) changed_[option][i] = true;

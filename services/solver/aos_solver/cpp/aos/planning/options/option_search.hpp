@@ -43,8 +43,11 @@ inline constexpr int most_attempts = 4;
 template <class Model>
 double attempted(int action, typename Model::State& state, double& discount, Sampler& random, const RunningDown<Model>& running_down) {
   const typename Model::State before = state;
+  const Xoshiro drawn = random;
   const double first = discount * Model::step(state, action, random).reward;
   discount *= Model::discount;
+  // Without a draw the same comes again.
+  if (drawn == random && are_alike<Model>(before, state)) return first;
   const auto has_changed = [&](const typename Model::State& next) { return Model::ending(next) != Ending::running || running_down.differ(before, next); };
   if (has_changed(state)) return first;
   typename Model::State next = state;
@@ -190,7 +193,7 @@ class OptionSearch {
           // What ends the mission ends with it what could have been earned a step later.
           const std::uint32_t more = goes_on ? longer : std::max(longer, later_ends);
           last_depth = std::min(last_depth, nodes_[number].depth + more);
-        } else if (goes_on && is_new(next.state, width)) {
+        } else if (goes_on && !are_alike<Model>(next.state, nodes_[number].state) && is_new(next.state, width)) {
           nodes_.push_back(std::move(next));
         }
       }

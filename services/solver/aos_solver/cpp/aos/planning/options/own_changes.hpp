@@ -41,12 +41,13 @@ class OwnChanges {
     List<std::size_t> earning(actions);
     for (const State& state : states) {
       cells.write(state, start_.data());
-      const std::uint64_t seed = random.bits();
+      const Sampler luck{random.bits()};
       for (std::size_t a = 0; a < actions; ++a) {
         State next = state;
-        Sampler same{seed};
+        Sampler same = luck;
         earning[a] += Model::step(next, a, same).reward > 0 ? 1 : 0;
-        cells.write(next, &after_[a * cells.size()]);
+        if (are_alike<Model>(state, next)) std::ranges::copy(start_, after_.begin() + a * cells.size());
+        else cells.write(next, &after_[a * cells.size()]);
         ends_[a] = Model::ending(next) != Ending::running ? 1 : 0;
       }
       compare(cells.size());

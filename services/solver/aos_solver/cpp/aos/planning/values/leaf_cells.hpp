@@ -2,6 +2,7 @@
 // other value is a cell of its own. A search tells by them what is new.
 #pragma once
 
+#include <cstring>
 #include <map>
 #include <set>
 
@@ -12,6 +13,12 @@
 #include "aos/planning/values/random_walk.hpp"
 
 namespace aos {
+
+// Whether two states are the same byte by byte, which takes less than to compare their cells.
+template <class Model>
+bool are_alike(const typename Model::State& one, const typename Model::State& other) {
+  return std::memcmp(Model::bytes_of(one), Model::bytes_of(other), Model::state_bytes()) == 0;
+}
 
 template <class Model>
 class LeafCells {
