@@ -5,6 +5,7 @@ from wide.delivery import delivery
 from wide.gauges import gauges
 from wide.leaving import questions, survey
 from wide.lock import lock
+from wide.pipe import pipe
 from wide.problems import open_field, parcels
 from wide.towers import towers
 from wide.writing import BundleWriter
@@ -193,3 +194,10 @@ for (int i = 1; i < 10; i++) __reward -= state.intruder[i] ? 0.3 : 0;
     assert "what is neglected costs more than ways to rewards earn" in plan.why
     assert len(run.actions) == 30, "longer than a battery lasts"
     assert "charge" in run.actions
+
+
+async def test_a_leak_is_sought_where_ways_to_it_are_known_and_none_pays_unseen():
+    """A robot that does not seek lands at once, with -0.2."""
+    async with engine_of_text(pipe(40)) as engine:
+        run = await simulated(engine, 2000, seed=2, goal_probability=1, step_limit=60)
+    assert run.discounted_return > 20

@@ -118,9 +118,9 @@ class Planners {
   ExactSearch<Model> exact_{space_};
   SarsopPlanner<Model> sarsop_{space_};
   BeliefTree<Model> belief_tree_{space_, values_, missions_};
-  OptionsPlanner<Model> options_{space_, pomcp_};
-  SavingsPlanner<Model> savings_{space_, options_, rollouts_, missions_};
   SeekPlanner<Model> seek_{space_, pomcp_};
+  OptionsPlanner<Model> options_{space_, pomcp_, seek_};
+  SavingsPlanner<Model> savings_{space_, options_, rollouts_, missions_};
   Despot<Model> despot_{space_, values_, missions_};
   const Order all_{&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &rollouts_, &seek_, &pomcp_, &despot_};
   // Which planners are tried in turn, by what was asked for. The last ones can always decide.

@@ -105,6 +105,8 @@ class OptionPolicy {
   const Estimates& estimates() const { return estimates_; }
   // What the best candidate is worth if nothing more is observed after it.
   double least() const { return least_; }
+  // Whether all that was tried, but for detours, earns nothing and spares no regret.
+  bool is_lost() const { return was_idle_; }
   // The plain plan that returns most from the states of the decision, and how much an action earns there.
   PlainPlan plain_plan(int horizon, const BarredActions& barred, Sampler& random) const {
     return PlainPlans<Model>::best(belief_, horizon, barred, of_plain * affordable_, random);

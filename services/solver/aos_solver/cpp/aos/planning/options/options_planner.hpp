@@ -9,6 +9,7 @@
 #include "aos/planning/options/promises.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/planning/pomcp/pomcp.hpp"
+#include "aos/planning/seek/seek_planner.hpp"
 #include "aos/planning/step_cost.hpp"
 
 namespace aos {
@@ -16,9 +17,9 @@ namespace aos {
 template <class Model>
 class OptionsPlanner final : public Planner<Model> {
  public:
-  OptionsPlanner(const StateSpace<Model>& space, Pomcp<Model>& pomcp) : Planner<Model>(space), pomcp_(pomcp) {}
+  OptionsPlanner(const StateSpace<Model>& space, Pomcp<Model>& pomcp, SeekPlanner<Model>& seek) : Planner<Model>(space), pomcp_(pomcp), seek_(seek) {}
 
-  const char* name() const override { return "options"; }
+  const char* name() const override { return seeks_ ? seek_.name() : "options"; }
 
   // POMCP has more to go by where the documents have a rollout policy, or values without observations can be computed.
   bool prepare(const Question<Model>& question, Sampler& random, Choosing& choosing) override {
@@ -61,11 +62,14 @@ class OptionsPlanner final : public Planner<Model> {
     const std::uint64_t simulations = policy_.search(question.belief, question.horizon, random, question.barred);
     affordable_.note(policy_.taken() - before, PlanningClock::now() - start);
     if (switches::plain_plans) weigh_promises(question, Sampler{Sampler{random}.bits()});
-    why += "; ways to rewards are found by search, and " + std::string{policy_.reason()} + " decides";
+    why += "; ways to rewards are found by search";
+    // What is lost for all that options see may be sought.
+    seeks_ = (policy_.is_lost() || seek_.has_sought()) && seek_.decides_over(policy_.least(), question, Sampler{random}, why);
+    if (!seeks_) why += ", and " + std::string{policy_.reason()} + " decides";
     return simulations;
   }
 
-  Estimates estimates(const Belief<Model>& /*belief*/) const override { return policy_.estimates(); }
+  Estimates estimates(const Belief<Model>& belief) const override { return seeks_ ? seek_.estimates(belief) : policy_.estimates(); }
   void advance(int action, Observation /*observation*/) override { promises_.note_taken(action); }
   void forget() override { promises_.forget(); }
   void start_over() override {
@@ -83,7 +87,7 @@ class OptionsPlanner final : public Planner<Model> {
 
   // Looks for ways, `longer` than the budget if that is short. Returns why these cannot decide; empty if they can.
   std::string look(const Question<Model>& question, bool longer, Sampler random, Choosing& choosing) {
-    Budget budget = question.budget;
+    Budget budget = question.budget.part(seek_.has_sought() ? 1 - seek_.share : 1);
     std::optional<SearchTime> time;
     if (longer) budget.seconds = first_look_s;
     else time.emplace(choosing);
@@ -119,6 +123,8 @@ class OptionsPlanner final : public Planner<Model> {
   }
 
   Pomcp<Model>& pomcp_;
+  SeekPlanner<Model>& seek_;
+  bool seeks_ = false;  // in the last decision
   OptionPolicy<Model> policy_;
   Promises promises_;
   AffordableSteps<Model> affordable_;

@@ -1,5 +1,6 @@
 // Seeking as a planner: where no way to a reward tells what to do, POMCP is asked, and decides unless to seek returns more
 // (seek_policy.hpp). Where to seek no longer pays, POMCP goes on: it tells less than it returns, and may find the thing.
+// Options ask it, too, where all that they see is a lost step.
 #pragma once
 
 #include "aos/base/clock.hpp"
@@ -15,16 +16,20 @@ namespace aos {
 template <class Model>
 class SeekPlanner final : public Planner<Model> {
  public:
+  static constexpr double share = 0.5;  // of a decision's steps
+
   SeekPlanner(const StateSpace<Model>& space, Pomcp<Model>& pomcp) : Planner<Model>(space), pomcp_(pomcp) {}
 
   const char* name() const override { return seeks_ ? "seek" : pomcp_.name(); }
 
   bool prepare(const Question<Model>& question, Sampler& random, Choosing& choosing) override {
-    const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
-    if (!switches::seek || is_by_name || is_listed || horizon == 1 || Model::has_rollout_policy) return false;
-    if (belief.probability_of(Ending::running) < 1 || pomcp_.has_wide_values(belief, horizon) || !looks_.is_due()) return false;
-    seek(belief, horizon, barred, share * affordable_.of(budget, horizon), random, choosing);
-    if (sought_.action < 0 || sought_.returned - (has_sought_ ? 0 : sought_.error) <= policy_.returned_at_once()) return false;
+    if (!is_open(question)) return false;
+    {
+      const SearchTime time{choosing};
+      seek(question, random);
+    }
+    note(sought_.action >= 0);
+    if (!is_more_than(policy_.returned_at_once())) return false;
     pomcp_.prepare(question, random, choosing);
     return true;
   }
@@ -36,13 +41,22 @@ class SeekPlanner final : public Planner<Model> {
     // A tree that ends in values of seen states promises what no robot returns that does not see them.
     estimates_ = pomcp_.values(question.belief, std::move(estimates_), chosen);
     seeks_ = sought_.returned > estimates_[chosen].q;
-    why += seeks_ ? "; to seek what is somewhere returns more, and decides" : "; to seek returns less";
-    if (!seeks_) return simulations;
-    has_sought_ = true;
-    estimates_.assign(estimates_.size(), {});
-    estimates_[sought_.action] = {sought_.returned, static_cast<std::uint32_t>(sought_.missions), sought_.error};
+    if (seeks_) settle(why);
+    else why += "; to seek returns less";
     return simulations;
   }
+
+  // Whether missions that seek return more than `least`, what the choice of another planner returns if nothing more is observed.
+  bool decides_over(double least, const Question<Model>& question, Sampler random, std::string& why) {
+    seeks_ = false;
+    if (!is_open(question)) return false;
+    seek(question, random);
+    seeks_ = is_more_than(std::max(least, policy_.returned_at_once()));
+    note(seeks_);
+    if (seeks_) settle(why);
+    return seeks_;
+  }
+  bool has_sought() const { return has_sought_; }
 
   Estimates estimates(const Belief<Model>& /*belief*/) const override { return estimates_; }
   void start_over() override {
@@ -52,18 +66,33 @@ class SeekPlanner final : public Planner<Model> {
   }
 
  private:
-  void seek(const Belief<Model>& belief, int horizon, const BarredActions& barred, double affordable, Sampler random, Choosing& choosing) {
-    const SearchTime time{choosing};
+  bool is_open(const Question<Model>& question) {
+    const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
+    if (!switches::seek || is_by_name || is_listed || horizon == 1 || Model::has_rollout_policy) return false;
+    return belief.probability_of(Ending::running) >= 1 && !pomcp_.has_wide_values(belief, horizon) && looks_.is_due();
+  }
+  void seek(const Question<Model>& question, Sampler random) {
     const auto start = PlanningClock::now();
     const ForgottenTexts forgotten;
+    const double affordable = share * affordable_.of(question.budget, question.horizon);
     Sampler own{random.bits()};
-    sought_ = policy_.find(belief, horizon, barred, affordable, own);
+    sought_ = policy_.find(question.belief, question.horizon, question.barred, affordable, own);
     affordable_.note(affordable, PlanningClock::now() - start);
-    if (sought_.action >= 0 || has_sought_) looks_.succeed();
+  }
+  // Puts the next look off where this one was in vain.
+  void note(bool was_worth_it) {
+    if (was_worth_it || has_sought_) looks_.succeed();
     else looks_.fail();
   }
-
-  static constexpr double share = 0.5;  // of a decision's steps
+  bool is_more_than(double returned) const {
+    return sought_.action >= 0 && sought_.returned - (has_sought_ ? 0 : sought_.error) > returned;
+  }
+  void settle(std::string& why) {
+    why += "; to seek what is somewhere returns more, and decides";
+    has_sought_ = true;
+    estimates_.assign(Model::action_count(), {});
+    estimates_[sought_.action] = {sought_.returned, static_cast<std::uint32_t>(sought_.missions), sought_.error};
+  }
 
   Pomcp<Model>& pomcp_;
   SeekPolicy<Model> policy_;
