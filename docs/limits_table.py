@@ -1,8 +1,8 @@
-"""The table of docs/limits.md: limits that a user can meet, with their values read from the sources.
+"""The tables of docs/limits.md: limits that a user can meet, with their values read from the sources.
 
-A line of limits.txt is what is limited, its place, its unit, and what is beyond it. A place is
-`module.CONSTANT` or `module.Struct.field` of Python, or `header:name` below the engine's `aos`. A value
-that has moved is an error here, so that the page cannot tell an old one.
+Behind each value stand its place and its unit, in a comment. A place is `module.CONSTANT` or
+`module.Struct.field` of Python, or `header:name` below the engine's `aos`. A value that has moved is an
+error here, so that the page cannot tell an old one.
 """
 
 import importlib
@@ -11,22 +11,19 @@ from pathlib import Path
 
 import msgspec
 
-LIMITS = Path(__file__).with_name("limits.txt")
+LIMITS = Path(__file__).with_name("limits.md")
+VALUE = re.compile(r"[^|]*<!-- (\S+) (\w* ?)--> ")
 ENGINE = Path(__file__).resolve().parents[1] / "services/solver/aos_solver/cpp/aos"
 
 
 def limits_table() -> str:
-    """The tables as Markdown, a heading above each."""
-    lines: list[str] = []
-    for line in LIMITS.read_text(encoding="utf-8").splitlines():
-        if line.startswith("#"):
-            lines += [line, "", "| What | At most | Beyond it |", "| --- | --- | --- |"]
-        elif line:
-            what, place, unit, beyond = line.split(" | ")
-            lines.append(f"| {what} | {_text(value_at(place), unit.strip())} | {_linked(beyond)} |")
-        else:
-            lines.append("")
-    return "\n".join(lines) + "\n"
+    """The tables of the page, with the values of now."""
+    page = LIMITS.read_text(encoding="utf-8")
+    tables = page.partition("<!-- generated: limits -->\n")[2].partition("<!-- end -->")[0]
+    return VALUE.sub(
+        lambda found: f" {_text(value_at(found[1]), found[2].strip())} <!-- {found[1]} {found[2]}--> ",
+        tables.strip("\n") + "\n",
+    )
 
 
 def value_at(place: str) -> float:
@@ -64,7 +61,3 @@ def _text(value: float, unit: str) -> str:
     if unit == "s":
         return f"{value / 86400:g} days" if value >= 86400 else f"{value:g} s"
     return f"{value:,g} {unit}".strip() if value < 1e6 else f"{int(value):,} {unit}".strip()
-
-
-def _linked(text: str) -> str:
-    return re.sub(r"AOS\d{3}", lambda code: f"[{code[0]}](errors.md)", text)
