@@ -7,7 +7,7 @@ from pathlib import Path
 
 from aos_lab.experiments.markdown import ends, head, row, shown, tally
 from aos_lab.experiments.markdown import page as page_of
-from aos_lab.experiments.results import PartResult, Results
+from aos_lab.experiments.results import Results
 from aos_lab.trials.claims import Verdict, usual_share
 
 _SHOWN_SEEDS = 20
@@ -50,7 +50,8 @@ def markdown_report(results: Results, *, has_pictures: bool = True) -> str:
     for part in results.parts if has_pictures else ():
         if part.picture:
             lines += [f"![{part.name}: the world at the end of a mission]({part.picture})", ""]
-    lines += ["## What was run", "", *_parts(results), ""]
+    if broken := list(_broken(results)):
+        lines += ["## Missions that broke", "", *broken, ""]
     return "\n".join(lines)
 
 
@@ -152,18 +153,7 @@ def _doings(results: Results) -> Iterator[str]:
         )
 
 
-def _parts(results: Results) -> Iterator[str]:
-    yield from head(
-        "part", "played by", "deploy file", "bundles", "seeds", "digest of documents and settings"
-    )
-    for part in results.parts:
-        yield row(part.name, part.by, part.deploy, ", ".join(part.bundles), _seeds(part), part.digest)
+def _broken(results: Results) -> Iterator[str]:
     for part in results.parts:
         for seed, fault in part.broken.items():
-            yield f"\n{part.name}, {part.by}, seed {seed} broke: {fault}"
-
-
-def _seeds(part: PartResult) -> str:
-    seeds = part.seeds
-    is_range = len(seeds) > 1 and list(seeds) == list(range(seeds[0], seeds[0] + len(seeds)))
-    return f"{seeds[0]} to {seeds[-1]}" if is_range else ", ".join(map(str, seeds))
+            yield f"- {part.name}, {part.by}, seed {seed}: {fault}"
