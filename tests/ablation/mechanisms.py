@@ -35,6 +35,8 @@ _OPTIONS = (
     "moved_by_ways",
     "reported_worlds",
     "idle_income",
+    "test_plans",
+    "raked_states",
 )
 _SAVINGS = ("savings", "saving_lookahead", "saving_rollouts")
 _SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree")

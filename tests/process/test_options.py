@@ -105,7 +105,7 @@ async def test_a_robot_leaves_where_promises_are_not_kept():
 async def test_a_camera_is_wiped_where_the_robot_goes_before_it_reads():
     """A robot without detours reads what it knows, up to the last step, since nothing else costs less."""
     async with engine_of_text(gauges(8)) as engine:
-        run = await simulated(engine, 2000, seed=302, goal_probability=1, step_limit=60)
+        run = await simulated(engine, 10000, seed=302, goal_probability=1, step_limit=60)
     assert "wipe" in run.actions
     assert run.actions[-1].startswith("report")
     assert len(run.actions) < 60

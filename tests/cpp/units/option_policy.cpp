@@ -182,4 +182,52 @@ TEST("A reward that an action has earned does not count again where the mission 
   }
 }
 
+// Two things of two kinds. To test one tells of it and costs little, and each may be kept or thrown away, once, where the robot is not far from them. To go there
+// costs what it does. A state has a bit for the kind of each thing, one for whether it is done, and one for whether the robot is far.
+Problem two_things(double odds, double of_way) {
+  constexpr int things = 2, go = 3 * things;
+  constexpr std::uint32_t far = 16;
+  Problem problem = units::world(32, go + 1, 0.95);
+  problem.sensings.push_back({{0, 0.75}, {1, 0.25}});
+  problem.sensings.push_back({{0, 0.25}, {1, 0.75}});
+  problem.starts.clear();
+  problem.values.clear();
+  problem.variables = 2 * things + 1;
+  for (std::uint32_t state = 0; state < 32; ++state) {
+    for (int bit = 0; bit < problem.variables; ++bit) problem.values.push_back(state >> bit & 1);
+    if ((state >> things) == (of_way < 0 ? 4u : 0u)) problem.starts.push_back({state, (state & 1 ? odds : 1 - odds) / 2});
+    const bool is_far = state & far;
+    units::row(problem, state, go) = {{1.0, state & ~far, 0, is_far ? of_way : -1.0}};
+    for (int thing = 0; thing < things; ++thing) {
+      const std::uint32_t kind = state >> thing & 1, done = 4u << thing;
+      const bool is_in_vain = is_far || (state & done);
+      units::row(problem, state, thing) = {{1.0, state, is_in_vain ? 0 : 1 + kind, -0.2}};
+      units::row(problem, state, things + thing) = {{1.0, is_in_vain ? state : state | done, 0, is_in_vain ? -1.0 : kind ? 6.0 : -6.0}};
+      units::row(problem, state, 2 * things + thing) = {{1.0, is_in_vain ? state : state | done, 0, is_in_vain ? -1.0 : kind ? -2.0 : 2.0}};
+    }
+  }
+  return problem;
+}
+
+// What the action that is chosen is worth less than the best one.
+double lost_by_options(const Problem& problem) {
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const Belief belief = Belief::initial(random);
+  const auto exact = exact_values(belief, 9);
+  aos::OptionPolicy<TableModel> policy;
+  EXPECT(policy.prepare(belief, 1e6, 0, random).empty());
+  policy.search(belief, problem.horizon, random, {});
+  const auto best = std::ranges::max_element(policy.estimates(), {}, &aos::ActionEstimate::q) - policy.estimates().begin();
+  return std::ranges::max_element(exact, {}, &aos::ExactValue::value)->value - exact[best].value;
+}
+
+TEST("A thing is tested as often as is worth it before it is done, whatever else can be tested") {
+  for (const double odds : {0.5, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95}) EXPECT(lost_by_options(two_things(odds, 0)) < 0.1);
+}
+
+TEST("A robot goes to things that are worth the way once they are tested") {
+  for (const double of_way : {-0.5, -1.0, -2.0, -2.5}) EXPECT(lost_by_options(two_things(0.5, of_way)) < 0.1);
+}
+
 }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "aos/base/stable_order.hpp"
+#include "aos/planning/options/optimal_stopping.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/option_sequels.hpp"
 #include "aos/planning/options/own_changes.hpp"
@@ -14,6 +15,13 @@
 #include "aos/planning/values/leaf_cells.hpp"
 
 namespace aos {
+
+// A plan that tests before it takes one of some options, or none (test_plans.hpp).
+struct TestPlan {
+  Option way;  // the first action, and an option
+  List<std::size_t> options;
+  StoppingChoice as;  // one option
+};
 
 template <class Model>
 class OptionGains {
@@ -26,7 +34,9 @@ class OptionGains {
   void measure(const auto& library, const List<State>& states, const OwnChanges<Model>& changes, double& steps, Sampler& random) {
     const List<Option>& options = library.options();
     const LeafCells<Model>& cells = library.cells();
-    options_ = &options;
+    ways_ = options;
+    plans_.clear();
+    lengths_.clear();
     retries_ = library.retries();
     states_ = states.size();
     earned_.assign(options.size() * states_, 0);
@@ -40,6 +50,7 @@ class OptionGains {
     after_.resize(cells.size());
     for (std::size_t o = 0; o < options.size(); ++o) {
       discounts_.push_back(std::pow(Model::discount, options[o].size()));
+      lengths_.push_back(static_cast<double>(options[o].size()));
       if (library.clock().is_over()) continue;
       for (std::size_t k = 0; k < states_; ++k) take(o, k, states[k], cells, random);
       steps -= tries * static_cast<double>(options[o].size() * states_);
@@ -48,12 +59,51 @@ class OptionGains {
     for (auto& changed : changed_) {
       for (std::size_t i = 0; i < cells.size(); ++i) changed[i] = changed[i] && !changes.is_worlds(i);
     }
-    touches_.assign(options.size() * options.size(), false);
-    for (std::size_t o = 0; o < options.size(); ++o) {
-      for (std::size_t other = 0; other < options.size(); ++other) touches_[o * options.size() + other] = touch(o, other);
-    }
+    note_touches();
     // Where conditions are counted, an option earns by what others have done before it.
     sequels_.begin(options, states, earned_, retries_, library.clock(), library.counts() ? 0 : share_of_sequels * steps, random);
+  }
+
+  // Lets plans count as options do, in place of those before.
+  void take_plans(List<TestPlan> plans) {
+    const std::size_t options = size() - plans_.size();
+    plans_ = std::move(plans);
+    ways_.resize(options);
+    discounts_.resize(options);
+    lengths_.resize(options);
+    changed_.resize(options);
+    earned_.resize(options * states_);
+    goes_on_.resize(options * states_);
+    for (const auto& [way, of, as] : plans_) {
+      ways_.push_back(way);
+      discounts_.push_back(as.discount);
+      lengths_.push_back(as.steps);
+      earned_.insert(earned_.end(), as.earned.begin(), as.earned.end());
+      goes_on_.insert(goes_on_.end(), as.goes_on.begin(), as.goes_on.end());
+      std::vector<bool> changed(changed_[of.front()].size());
+      for (const std::size_t o : of) {
+        used_[o] = true;
+        for (std::size_t i = 0; i < changed.size(); ++i) changed[i] = changed[i] || changed_[o][i];
+      }
+      changed_.push_back(std::move(changed));
+    }
+    ends_.resize(size());
+    used_.resize(size());
+    note_touches();
+  }
+  bool is_plan(std::size_t option) const { return option + plans_.size() >= size(); }
+  const Option& way(std::size_t option) const { return ways_[option]; }
+  double length(std::size_t option) const { return lengths_[option]; }
+  bool ends(std::size_t option) const { return ends_[option]; }
+  double earned_in(std::size_t option, std::size_t state) const { return earned_[option * states_ + state]; }
+  double goes_on_in(std::size_t option, std::size_t state) const { return goes_on_[option * states_ + state]; }
+  // Whether both change the same variable, but for what `all` options change.
+  bool touch(std::size_t option, std::size_t other, const List<std::size_t>* all = nullptr) const {
+    for (std::size_t i = 0; i < changed_[option].size(); ++i) {
+      const auto changes = [&](std::size_t o) { return changed_[o][i]; };
+      if (changes(option) && changes(other) && !(all != nullptr && std::ranges::all_of(*all, changes))) return true;
+    }
+    return option == other;
   }
 
   // The steps that are kept for that and are not taken yet.
@@ -110,7 +160,7 @@ class OptionGains {
     cells.write(start, before_.data());
     for (int i = 0; i < tries; ++i) {
       State state = start;
-      const OptionOutcome outcome = taken_option<Model>((*options_)[option], state, random, retries_);
+      const OptionOutcome outcome = taken_option<Model>(ways_[option], state, random, retries_);
       earned_[option * states_ + k] += outcome.earned / tries;
       goes_on_[option * states_ + k] += outcome.goes_on / tries;
       if (outcome.goes_on == 0) ends_[option] = true;
@@ -128,7 +178,7 @@ class OptionGains {
     for (std::size_t o = 0; o < size(); ++o) {
       if (before != none && cannot_follow(o, before)) continue;
       const double earned = earned_by(o);
-      if (earned > 0) candidates_.push_back({o, income<Model>(earned, (*options_)[o].size()), earned});
+      if (earned > 0) candidates_.push_back({o, income<Model>(earned, lengths_[o]), earned});
     }
     sort_stably(candidates_, [](const Candidate& one, const Candidate& other) { return one.income > other.income; });
     double sum = 0;
@@ -176,24 +226,27 @@ class OptionGains {
     return sum;
   }
 
-  bool touches(std::size_t option, std::size_t other) const { return touches_[option * size() + other]; }
-  bool touch(std::size_t option, std::size_t other) const {
-    for (std::size_t i = 0; i < changed_[option].size(); ++i) {
-      if (changed_[option][i] && changed_[other][i]) return true;
+  void note_touches() {
+    touches_.assign(size() * size(), false);
+    for (std::size_t o = 0; o < size(); ++o) {
+      for (std::size_t other = 0; other < size(); ++other) touches_[o * size() + other] = touch(o, other);
     }
-    return option == other;
   }
   // An option that fails to end the mission leaves the others as they were.
   bool cannot_follow(std::size_t option, std::size_t before) const {
-    return option == before || (!ends_[before] && (touches(option, before) || !sequels_.can_follow(option, before)));
+    return option == before || (!ends_[before] && (touches_[option * size() + before] || !sequels_.can_follow(tried(option), tried(before))));
   }
+  // Of a plan its first option is tried.
+  std::size_t tried(std::size_t option) const { return is_plan(option) ? plans_[option + plans_.size() - size()].options.front() : option; }
 
-  const List<Option>* options_ = nullptr;
+  List<Option> ways_;  // the plans come last
+  List<TestPlan> plans_;
   std::size_t states_ = 0;
   const RunningDown<Model>* retries_ = nullptr;  // actions that change nothing else are taken again
   List<double> earned_;   // [option * states + state]
   List<double> goes_on_;  // [option * states + state]
   List<double> discounts_;
+  List<double> lengths_;  // in steps
   std::vector<bool> ends_;  // in some state, and earns nothing where it does not
   std::vector<bool> earns_without_end_;
   List<std::vector<bool>> changed_;  // [option][variable]

@@ -95,7 +95,7 @@ class OptionLibrary {
     }
     if (options_.size() <= many_options) return;
     List<Option> used;
-    for (std::size_t o = 0; o < gains.size(); ++o) {
+    for (std::size_t o = 0; o < std::min(gains.size(), options_.size()); ++o) {
       if (gains.is_used(o)) used.push_back(std::move(options_[o]));
     }
     options_.clear();

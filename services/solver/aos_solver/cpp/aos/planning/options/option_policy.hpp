@@ -27,6 +27,7 @@
 #include "aos/planning/options/own_changes.hpp"
 #include "aos/planning/options/plain_plans.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/options/test_plans.hpp"
 
 namespace aos {
 
@@ -51,6 +52,7 @@ class OptionPolicy {
     const auto all_else = [&](const State& state) { return library_.running_down().all_else_of(state); };
     if (switches::alike_states) belief_.draw_alike(belief, static_cast<std::size_t>(states), all_else, random);
     else belief_.draw(belief, static_cast<std::size_t>(states), random);
+    if (switches::raked_states) belief_.rake(belief, library_.searched_cells(), random);
     library_.drop_unused(gains_, taken_way_);
     double left = of_options * affordable_;
     changes_.measure(belief_.states(), library_.cells(), left, random);
@@ -83,14 +85,20 @@ class OptionPolicy {
     double left = (1 - kept) * affordable_ - taken_ - gains_.kept_steps();
     clock_.end_at(of_all - kept);
     values_.begin(belief_, horizon, tried_options + tried_moves_.size(), left, random);
-    const List<std::size_t> likely = likely_options(barred);
+    List<std::size_t> likely = likely_options(barred);
     regret_.watch(likely);
     if (regret_.now() > matters * std::abs(regret_.value_seen())) {
       if (switches::twins && !library_.counts() && changes_.leaves_tests()) twins_.find(belief, of_twins * left, left, random);
+      tests_.observe_all(barred, left, random);
+      if (switches::test_plans && !library_.counts() && !twins_.are_known()) {
+        add_plans(barred, left, random);
+        likely = likely_options(barred);
+        regret_.watch(likely);
+      }
       add_observations(likely, barred, left, random);
     }
     const std::size_t observing = candidates_.size();
-    for (std::size_t i = 0; i < likely.size(); ++i) add_option(likely[i], gained_after(likely[i], i, observing, left, random));
+    for (std::size_t i = 0; i < likely.size(); ++i) add_option(likely[i], i, observing, left, random);
     note_way(likely, observing);
     if (switches::tests_first) pairs_.add_to(candidates_, observing, left, random);
     left += kept * affordable_;
@@ -158,6 +166,7 @@ class OptionPolicy {
   // Of the time, if the budget is one:
   static constexpr double of_gains = 0.5;  // until options are measured
   static constexpr double of_all = 0.95;   // to end what is at hand takes the rest
+  static constexpr double of_plans = 0.4;      // of the time and the steps that are left
   static constexpr double of_twins = 0.1;      // of the steps that are left
   static constexpr double enough_found = 0.5;  // of the belief
   static constexpr double whole_look = 80'000;  // steps: searches at both widths from two states (docs/lab/budgets.md)
@@ -194,9 +203,8 @@ class OptionPolicy {
   List<std::size_t> likely_options(const BarredActions& barred) const {
     List<std::pair<double, std::size_t>> incomes;
     for (std::size_t o = 0; o < gains_.size(); ++o) {
-      const Option& option = library_.options()[o];
-      if (barred.contains(option.front())) continue;
-      incomes.emplace_back(income<Model>(gains_.earned(o, belief_.weights()), option.size()), o);
+      if (barred.contains(gains_.way(o).front())) continue;
+      incomes.emplace_back(income<Model>(gains_.earned(o, belief_.weights()), gains_.length(o)), o);
     }
     sort_stably(incomes, [](const auto& one, const auto& other) { return one.first > other.first; });
     List<std::size_t> options;
@@ -206,13 +214,13 @@ class OptionPolicy {
 
   // What can be gained by observing now can be gained after the option, too, but for what is told of the option itself, and as
   // far as as much is told there: a look into a room tells of another one where the option leads elsewhere. What is not tried
-  // there counts in full.
-  double gained_after(std::size_t option, std::size_t likely, std::size_t observing, double& left, Sampler& random) {
+  // there counts in full. The `rest`, which is earned after the option, has to wait for it.
+  double gained_after(std::size_t option, std::size_t likely, double rest, std::size_t observing, double& left, Sampler& random) {
     const double blind = regret_.value_seen() - regret_.now();
     List<std::pair<double, const OptionCandidate*>> gains;
     for (std::size_t c = 0; c < observing; ++c) {
       const OptionCandidate& candidate = candidates_[c];
-      const double gain = candidate.value - candidate.discount * (blind + candidate.avoided[likely]);
+      const double gain = candidate.value - candidate.discount * (blind + candidate.avoided[likely]) - (1 - candidate.discount) * rest;
       if (gain > 0) gains.emplace_back(gain, &candidate);
     }
     sort_stably(gains, [](const auto& one, const auto& other) { return one.first > other.first; });
@@ -221,30 +229,39 @@ class OptionPolicy {
       const auto& [gain, candidate] = gains[i];
       if (!switches::tests_first || i >= most_after || left <= 0 || clock_.is_over()) return gain;
       const double here = candidate->spared - candidate->avoided[likely];
-      const double there = moves_.spared_after(library_.options()[option], likely, candidate->way, here, left, random);
+      const double there = moves_.spared_after(gains_.way(option), likely, candidate->way, here, left, random);
       gained = std::max(gained, gain - candidate->discount * std::max(here - there, 0.0));
     }
     return gained;
   }
 
   // While the mission goes on, what can be observed is gained after the option. So of both comes first what brings more.
-  void add_option(std::size_t option, double gained) {
+  void add_option(std::size_t option, std::size_t likely, std::size_t observing, double& left, Sampler& random) {
     const StateWeights after = gains_.after(option, belief_.weights());
     const double goes_on = std::accumulate(after.begin(), after.end(), 0.0);
-    const double later = gains_.best(after, option) + goes_on * gained;
+    const double rest = gains_.best(after, option);
+    const double later = rest + goes_on * gained_after(option, likely, rest, observing, left, random);
     const double value = gains_.earned(option, belief_.weights()) + gains_.discount(option) * later;
-    candidates_.push_back({library_.options()[option].front(), value, gains_.discount(option), "what can be earned"});
+    candidates_.push_back({gains_.way(option).front(), value, gains_.discount(option), gains_.is_plan(option) ? "what can be observed" : "what can be earned"});
   }
 
   // Notes the option that is the best candidate so far, if one is.
   void note_way(const List<std::size_t>& likely, std::size_t observing) {
     const auto best = std::ranges::max_element(candidates_, {}, &OptionCandidate::value);
     const std::size_t place = best - candidates_.begin();
-    taken_way_ = place >= observing && place < candidates_.size() ? library_.options()[likely[place - observing]] : Option{};
+    taken_way_ = place >= observing && place < candidates_.size() ? gains_.way(likely[place - observing]) : Option{};
+  }
+
+  void add_plans(const BarredActions& barred, double& left, Sampler& random) {
+    const DecisionClock::Slice part(clock_, of_plans * clock_.left_s());
+    double steps = of_plans * left;
+    left -= steps;
+    plans_.add(barred, steps, random);
+    left += steps;
+    regret_.weigh_again();
   }
 
   void add_observations(const List<std::size_t>& likely, const BarredActions& barred, double& left, Sampler& random) {
-    tests_.observe_all(barred, left, random);
     const List<View> views = library_.counts() ? priced_views(barred, left, random) : List<View>{};
     tests_.add_to(candidates_, left, random);
     if (twins_.are_known()) regret_.set_price(std::numeric_limits<double>::infinity(), true);
@@ -254,8 +271,8 @@ class OptionPolicy {
       if (are_for_views_ && !library_.counts() && left > 0 && !clock_.is_over()) moves_.add_view(candidates_, moves_.best_view(move, barred, left, random), left, random);
     }
     for (const std::size_t option : likely) {
-      if (left > 0 && !clock_.is_over() && library_.options()[option].size() > 1) {
-        moves_.add_view(candidates_, moves_.best_view(library_.options()[option].front(), barred, left, random), left, random);
+      if (left > 0 && !clock_.is_over() && !gains_.is_plan(option) && gains_.way(option).size() > 1) {
+        moves_.add_view(candidates_, moves_.best_view(gains_.way(option).front(), barred, left, random), left, random);
       }
     }
     if (twins_.are_known()) regret_.set_price(tests_.price_of_nat(regret_.value_seen(), true), true);
@@ -285,7 +302,7 @@ class OptionPolicy {
     candidates_.insert(candidates_.begin(), found.begin(), found.end());
     if (waiting == 0) return;
     for (const std::size_t option : likely) {
-      candidates_.push_back({library_.options()[option].front(), detours_.returned(option, belief_.weights()), gains_.discount(option), "what can be earned"});
+      candidates_.push_back({gains_.way(option).front(), detours_.returned(option, belief_.weights()), gains_.discount(option), "what can be earned"});
     }
     note_way(likely, found.size());
   }
@@ -329,6 +346,7 @@ class OptionPolicy {
   OwnChanges<Model> changes_;
   OptionTwins<Model> twins_{belief_, regret_, library_};
   OptionTests<Model> tests_{belief_, regret_, changes_, twins_, clock_};
+  TestPlans<Model> plans_{belief_, gains_, tests_};
   OptionValues<Model> values_{library_, clock_};
   OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
   OptionDetours<Model> detours_{belief_, gains_, clock_};

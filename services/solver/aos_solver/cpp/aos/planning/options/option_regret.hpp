@@ -55,6 +55,8 @@ class OptionRegret {
     prices_ways_ = of_ways;
     regret_ = after(belief_.weights());
   }
+  // The same where options have been added that earn no more where the state is seen.
+  void weigh_again() { regret_ = after(belief_.weights()); }
   // By state: the option that is best there, where no other one follows it.
   const List<std::size_t>& only_ways() const { return only_ways_; }
   // The options that may be taken next.

@@ -83,8 +83,8 @@ OptionOutcome taken_option(const Option& option, typename Model::State& state, S
 
 // What is earned in so many steps, as an income at each step.
 template <class Model>
-double income(double earned, std::size_t steps) {
-  const double shares = Model::discount < 1 ? (1 - std::pow(Model::discount, steps)) / (1 - Model::discount) : static_cast<double>(steps);
+double income(double earned, double steps) {
+  const double shares = Model::discount < 1 ? (1 - std::pow(Model::discount, steps)) / (1 - Model::discount) : steps;
   return earned / shares;
 }
 

@@ -21,6 +21,13 @@ class OptionTests {
   static constexpr double least_information = 1e-3;  // in nats
   static constexpr int most_repeats = 8;
 
+  struct Test {
+    int action;
+    double reward;
+    double information;
+    bool is_priced;  // since it tells of nothing but the best option
+  };
+
   // How many steps of the model take as long as to weigh so many states by what is drawn from them.
   static double steps_of_weighing(std::size_t states) {
     constexpr double of_likelihood = 0.2;
@@ -74,6 +81,7 @@ class OptionTests {
   }
 
   bool empty() const { return tests_.empty(); }
+  const List<Test>& tests() const { return tests_; }
   // What a nat costs, with the time that it takes, by the test where it is cheapest; infinite without a test.
   double price_of_nat(double value_seen, bool of_options = false) const {
     double price = std::numeric_limits<double>::infinity();
@@ -103,13 +111,6 @@ class OptionTests {
 
  private:
   static constexpr std::size_t tried_tests = 8;  // of each skill
-
-  struct Test {
-    int action;
-    double reward;
-    double information;
-    bool is_priced;  // since it tells of nothing but the best option
-  };
 
   List<Test> most_telling() const {
     List<Test> tests;

@@ -28,6 +28,7 @@ class RepeatedObservation {
     for (std::size_t i = 1; i < likelihoods_.size(); ++i) combinations *= static_cast<double>(times + static_cast<int>(i)) / static_cast<double>(i);
     return !likelihoods_.empty() && combinations <= most_combinations;
   }
+  const List<List<double>>& likelihoods() const { return likelihoods_; }
   bool tells_nothing() const { return likelihoods_.size() == 1; }
 
   // Calls `use(probability, weights)` with the weights after each combination.

@@ -109,6 +109,48 @@ class SampledBelief {
     }
   }
 
+  // Weighs the states so that each variable of few values is distributed as in the whole belief (raking: Deming and Stephan, 1940), as long
+  // as the weights stay even enough. What is drawn of a dozen things errs in each, and of many options the draw flatters the best one.
+  void rake(const Belief<Model>& belief, const auto& cells, Sampler& random) {
+    const std::size_t variables = cells.size();
+    List<std::uint64_t> row(variables);
+    List<std::map<std::uint64_t, double>> shares(variables);  // of the belief, by the values that the states have
+    List<std::uint64_t> rows;
+    for (const State& state : states_) {
+      cells.write(state, row.data());
+      rows.insert(rows.end(), row.begin(), row.end());
+      for (std::size_t v = 0; v < variables; ++v) shares[v].emplace(row[v], 0.0);
+    }
+    const auto is_raked = [&](std::size_t v) { return shares[v].size() > 1 && shares[v].size() <= most_values; };
+    const int drawn = static_cast<int>(raked_cells / (variables + 1));
+    draw_evenly<Model>(belief.particles(), drawn, random, [&](const State& state) {
+      if (Model::ending(state) != Ending::running) return;
+      cells.write(state, row.data());
+      for (std::size_t v = 0; v < variables; ++v) {
+        const auto known = is_raked(v) ? shares[v].find(row[v]) : shares[v].end();
+        if (known != shares[v].end()) known->second += 1;
+      }
+    });
+    StateWeights raked = weights_;
+    const double least = evenness(weights_) / 2;
+    for (std::size_t turn = 0; turn < sweeps * variables; ++turn) {
+      const std::size_t v = turn % variables;
+      if (!is_raked(v)) continue;
+      std::map<std::uint64_t, double> sums;
+      for (std::size_t k = 0; k < raked.size(); ++k) sums[rows[k * variables + v]] += raked[k];
+      double total = 0;
+      for (std::size_t k = 0; k < raked.size(); ++k) {
+        const std::uint64_t value = rows[k * variables + v];
+        raked[k] *= raked[k] > 0 ? shares[v].at(value) / sums.at(value) : 0;
+        total += raked[k];
+      }
+      if (!(total > 0)) return;
+      for (double& weight : raked) weight /= total;
+      if (evenness(raked) < least) return;
+      weights_ = raked;
+    }
+  }
+
   std::size_t size() const { return states_.size(); }
   const List<State>& states() const { return states_; }
   const StateWeights& weights() const { return weights_; }
@@ -120,7 +162,14 @@ class SampledBelief {
   }
 
  private:
-  static constexpr std::size_t most_compared = 8192;  // particles
+  static constexpr std::size_t most_compared = 8192;   // particles
+  static constexpr std::size_t most_values = 8;        // of a variable that is raked
+  static constexpr std::size_t raked_cells = 100'000;  // of the belief
+  static constexpr std::size_t sweeps = 8;
+
+  // How many states of even weight are as good.
+  static double evenness(const StateWeights& weights) { return 1 / std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0); }
+
 
   List<State> states_;
   StateWeights weights_;
