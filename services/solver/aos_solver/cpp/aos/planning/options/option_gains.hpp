@@ -91,6 +91,14 @@ class OptionGains {
     used_.resize(size());
     note_touches();
   }
+  // Whether a plan goes elsewhere and tests there.
+  bool is_trip(std::size_t option) const { return is_plan(option) && ways_[option].size() < ways_[tried(option)].size(); }
+  // The plan that goes where an option does, and tests there; without one the option itself.
+  std::size_t with_tests_there(std::size_t option) const {
+    const Option there(ways_[option].begin(), ways_[option].end() - 1);
+    const auto place = std::ranges::find(plans_, there, &TestPlan::way);
+    return place != plans_.end() ? size() - plans_.size() + (place - plans_.begin()) : option;
+  }
   bool is_plan(std::size_t option) const { return option + plans_.size() >= size(); }
   const Option& way(std::size_t option) const { return ways_[option]; }
   double length(std::size_t option) const { return lengths_[option]; }

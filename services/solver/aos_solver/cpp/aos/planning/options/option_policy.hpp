@@ -235,12 +235,14 @@ class OptionPolicy {
     return gained;
   }
 
-  // While the mission goes on, what can be observed is gained after the option. So of both comes first what brings more.
+  // While the mission goes on, what can be observed is gained after the option. So of both comes first what brings more. After tests elsewhere
+  // what they tell does not count again, and nothing else is known of what can be observed there.
   void add_option(std::size_t option, std::size_t likely, std::size_t observing, double& left, Sampler& random) {
     const StateWeights after = gains_.after(option, belief_.weights());
     const double goes_on = std::accumulate(after.begin(), after.end(), 0.0);
     const double rest = gains_.best(after, option);
-    const double later = rest + goes_on * gained_after(option, likely, rest, observing, left, random);
+    const double gained = gains_.is_trip(option) ? 0 : gained_after(option, likely, rest, observing, left, random);
+    const double later = rest + goes_on * gained;
     const double value = gains_.earned(option, belief_.weights()) + gains_.discount(option) * later;
     candidates_.push_back({gains_.way(option).front(), value, gains_.discount(option), gains_.is_plan(option) ? "what can be observed" : "what can be earned"});
   }

@@ -159,7 +159,12 @@ class TestPlans {
 
   void add_here(List<TestPlan>& plans, const Place& here, double& steps) const {
     for_each_choice(here, [&](const Options& options) {
-      StoppingPlan plan = stopped(here, options, gains_.best(belief_.weights(), options.front()), steps);
+      Options choices;
+      for (const std::size_t o : options) {
+        const std::size_t choice = gains_.with_tests_there(o);
+        if (std::ranges::find(choices, choice) == choices.end()) choices.push_back(choice);
+      }
+      StoppingPlan plan = stopped(here, choices, gains_.best(belief_.weights(), options.front()), steps);
       if (plan.test == nullptr) return;
       Option way = gains_.way(options.front());
       way.insert(way.begin(), plan.test->action);
