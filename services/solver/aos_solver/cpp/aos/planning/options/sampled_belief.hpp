@@ -170,7 +170,6 @@ class SampledBelief {
   // How many states of even weight are as good.
   static double evenness(const StateWeights& weights) { return 1 / std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0); }
 
-
   List<State> states_;
   StateWeights weights_;
 };
