@@ -186,7 +186,7 @@ def test_defaults_that_set_the_same_element_are_told():
     copied = ENVIRONMENT.replace("state.second.x = 2;", "state.first.x = 2;")
     (only,) = finding_texts(environment=copied)
     assert only.startswith("13 AOS141 the default of second sets `state.first.x`, and not the variable")
-    early = ENVIRONMENT.replace("state.first.x = ", "state.first.x = state.second.x + ")
+    early = ENVIRONMENT.replace("state.first.x = 1", "state.first.x = state.second.x + 1")
     (only,) = finding_texts(environment=early)
     assert only.endswith("reads `state.second.x` before that has its own. Declare first below second")
 

@@ -101,7 +101,8 @@ def _calculated(node: tree_sitter.Node) -> Iterator[Odd]:
     elif operator in ("&&", "||"):
         while operator_of(left) == operator:
             left = left.children[2]
-        yield from _joined(left, operator, right) if operator_of(left) in ("==", "!=") else ()
+        if operator_of(left) in ("==", "!=") and len(left.children) == 3:  # Else it does not parse.
+            yield from _joined(left, operator, right)
 
 
 def _joined(left: tree_sitter.Node, operator: str, right: tree_sitter.Node) -> Iterator[Odd]:

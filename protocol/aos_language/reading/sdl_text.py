@@ -130,6 +130,10 @@ def _said(part: Part) -> list[str]:
 def listed_values(part: Part, findings: Findings) -> list[Text]:
     """The names between commas in a part's value and the lines below it; an error where there are none."""
     lines = [line for line in (part.value, *part.lines) if line.text] or [part.value]
+    if lines[0].text[:1] + lines[-1].text[-1:] in ("[]", "{}"):
+        findings.warning("AOS127", "brackets around the names", lines[0].span, "They are skipped")
+        lines[0] = lines[0].after(1).strip()
+        lines[-1] = Text(lines[-1].text[:-1], lines[-1].span).strip()
     return [value for line in lines for value in enum_values(line, findings)]
 
 
@@ -337,6 +341,8 @@ class _Scanner:
         if place is None and self._is_in_code():
             return False
         hint = f"It belongs {place}" if place else f"The sections are {', '.join(self._grammar)}"
+        if name == "code" and self._sections and self._sections[-1].word == "special_state":
+            hint = "Write `reward_code:` in place of `special_state:`"
         words = set(re.findall(r"`\w+:`", hint))
         if not words & self._misplaced:  # What belongs to one missing word is told once.
             self._findings.error("AOS102", f"`{name}:` has no place here", at.span, hint)

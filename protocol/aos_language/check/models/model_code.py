@@ -4,7 +4,14 @@ from collections.abc import Iterable
 
 import msgspec
 
-from aos_language.check.models.blocks import DEFAULT, Block, environment_blocks, read_block, skill_blocks
+from aos_language.check.models.blocks import (
+    DEFAULT,
+    PRECONDITION,
+    Block,
+    environment_blocks,
+    read_block,
+    skill_blocks,
+)
 from aos_language.check.models.built_ins import BUILT_INS, check_built_in
 from aos_language.check.models.mentions import LITERAL_NAMES, MentionCheck, check_objects, listing
 from aos_language.check.models.weights import check_weights
@@ -175,8 +182,9 @@ class _BlockCheck:
                 message, mend = "this comparison does nothing", Mend(span, 2, "=")
             report = self._findings.error if self._block.is_expression else self._findings.warning
             report("AOS149", message, span, hint, mend)
+        name = "__meetPrecondition" if self._block.role is PRECONDITION else "NAME"
         for value in self._cpp.idle_values:
-            hint = f"To set a variable, write `NAME = {self._cpp.code[value.start : value.end]};`"
+            hint = f"To set a variable, write `{name} = {self._cpp.code[value.start : value.end]};`"
             self._findings.warning("AOS149", "this statement does nothing", self._span(value), hint)
         for odd in self._cpp.odd_parts:
             if {*odd.of_enums} <= {*self._scope.enum_values} - {*self._locals}:
