@@ -40,6 +40,7 @@ dynamic_model:
 state__.second.x = state.second.x + steps;
 __moduleResponse = walked;
 """
+SIDES = f"{ENVIRONMENT}\ndefine_type: Side\nenum_members: Left, Right\nstate_variable: Side side\n"
 MAPPING = """project: hall
 response: walked
 response_rule: True

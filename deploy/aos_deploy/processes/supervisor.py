@@ -291,7 +291,7 @@ class Supervisor:
             self._returns.expect(program) if it_comes else self._returns.settle(program.name)
 
     async def _kill_if_stopped(self, running: RunningProgram) -> None:
-        """Kills a program of the user's own that SIGSTOP has stopped. Others may serve less, or nothing."""
+        """Kills a user's own program that SIGSTOP has stopped, and tells of one that serves nothing."""
         child = running.child
         await asyncio.sleep(FROZEN_S)
         running.silence = None

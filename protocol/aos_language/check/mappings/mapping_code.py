@@ -5,12 +5,12 @@ import keyword
 from collections.abc import Iterable, Iterator
 
 from aos_language.check.mappings import python_names
-from aos_language.check.mappings.enum_texts import check_enum_texts
 from aos_language.check.mappings.input_fields import check_input_fields
 from aos_language.check.mappings.python_parsed import parsed
 from aos_language.check.mappings.result_order import check_result_order
 from aos_language.check.mappings.rule_gaps import check_rule_gaps
 from aos_language.check.mappings.taken_away import check_taken_away
+from aos_language.check.mappings.value_uses import check_value_uses
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.local_types import ELEMENTS, OF_SKILL, local_type
@@ -64,7 +64,7 @@ def check_mapping(
             _check_parameter(variable, model, scope, findings)
     if model is not None:
         _check_passed_on(mapping, model, findings)
-        check_enum_texts(mapping, snippets_of_mapping(mapping), model, scope, findings)
+        check_value_uses(mapping, snippets_of_mapping(mapping), model, scope, findings)
     local_names = [variable.name for variable in mapping.local_variables]
     if mapping.response_variable and mapping.response_variable not in local_names:
         message = f"unknown local variable `{mapping.response_variable}`"

@@ -1,5 +1,5 @@
-"""Mappings see an enum's value as the text of its name, a compound as a dict, and a number as no text: other
-uses are told."""
+"""Uses of values in mappings: an enum's is the text of its name, a compound's a dict, and a number no text.
+Others are told, and so are slips of Python."""
 
 import ast
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ _STATUSES = ("succeeded", "refused", "failed", "timed_out", "cancelled", "unknow
 _ORDERINGS = (ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
 
-def check_enum_texts(
+def check_value_uses(
     mapping: documents.AbstractionMapping,
     snippets: Iterator[documents.Snippet],
     model: documents.SkillModel,
@@ -42,31 +42,21 @@ def check_enum_texts(
         own |= {node.arg for node in nodes if isinstance(node, ast.arg)}
         known = {name: enum for name, enum in enums.items() if name not in own}
         known_plain = {name: kind for name, kind in plain.items() if name not in own}
+        fields = {name: compound for name, compound in compounds.items() if name not in own}
+        numbers_and_texts = known_plain | dict.fromkeys(known, "string")
         tested = {id(part) for node in nodes for part in _tested(node)}
         for node in nodes:
-            if isinstance(node, ast.Attribute) and isinstance(value := node.value, ast.Name):
-                kind = known_plain.get(value.id, "string" if value.id in known else "")
-                if kind and not hasattr(_PYTHON[kind], node.attr):
-                    span = snippet.locate(value.lineno - lines_above, value.col_offset + 1)
-                    message = f"`{value.id}` is of the type {kinds[value.id]}, which has no `{node.attr}`"
-                    findings.warning("AOS149", message, span, f"Write `{value.id}` alone")
-                elif kind and id(node) in tested and callable(getattr(_PYTHON[kind], node.attr)):
-                    span = snippet.locate(value.lineno - lines_above, value.col_offset + 1)
-                    called = f"{value.id}.{node.attr}"
-                    message = f"`{called}` is a function, and counts as true"
-                    findings.warning("AOS149", message, span, f"Write `{called}()`")
-                compound = None if value.id in own else compounds.get(value.id)
-                if compound is not None and node.attr in {field.name for field in compound.fields}:
-                    span = snippet.locate(value.lineno - lines_above, value.col_offset + 1)
-                    message = f"`{value.id}` is a dict of the fields of {compound.name}"
-                    findings.error("AOS121", message, span, f"Write `{value.id}['{node.attr}']`")
             for name, message, hint in (
+                *_attribute(node, numbers_and_texts, kinds, id(node) in tested),
                 *_mistakes(node, known, takes_all),
                 *_unlike(node, known_plain),
                 *_slips(node),
             ):
                 span = snippet.locate(name.lineno - lines_above, name.col_offset + 1)
                 findings.warning("AOS149", message, span, hint)
+            for name, message, hint in _field(node, fields):
+                span = snippet.locate(name.lineno - lines_above, name.col_offset + 1)
+                findings.error("AOS121", message, span, hint)
 
 
 def _tree(snippet: documents.Snippet) -> tuple[ast.AST, int]:
@@ -129,6 +119,31 @@ def _mistakes(
         and (name := name_of(node.slice)) is not None
     ):
         yield name, *_no_number(name.id, enums[name.id])
+
+
+def _attribute(
+    node: ast.AST, plain: dict[str, str], kinds: dict[str, str], is_tested: bool
+) -> Iterator[tuple[ast.expr, str, str]]:
+    """An attribute that a number or a text does not have, and a method that a condition does not call."""
+    if not (isinstance(node, ast.Attribute) and isinstance(value := node.value, ast.Name)):
+        return
+    kind = plain.get(value.id, "")
+    if kind and not hasattr(_PYTHON[kind], node.attr):
+        message = f"`{value.id}` is of the type {kinds[value.id]}, which has no `{node.attr}`"
+        yield value, message, f"Write `{value.id}` alone"
+    elif kind and is_tested and callable(getattr(_PYTHON[kind], node.attr)):
+        called = f"{value.id}.{node.attr}"
+        yield value, f"`{called}` is a function, and counts as true", f"Write `{called}()`"
+
+
+def _field(
+    node: ast.AST, compounds: dict[str, documents.CompoundType]
+) -> Iterator[tuple[ast.expr, str, str]]:
+    match node:
+        case ast.Attribute(value=ast.Name(id=name) as value, attr=attribute) if name in compounds:
+            if attribute in {field.name for field in compounds[name].fields}:
+                message = f"`{name}` is a dict of the fields of {compounds[name].name}"
+                yield value, message, f"Write `{name}['{attribute}']`"
 
 
 def _tested(node: ast.AST) -> Iterator[ast.AST]:
