@@ -8,6 +8,7 @@ from typing import Annotated, NamedTuple, TypeVar
 import typer
 
 from aos_deploy.bundles.engine import engine_of_bundle
+from aos_deploy.bundles.files import deployment_at
 from aos_deploy.deployment.constraints import constraint_of_option
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.deployment.parts import MAX_COUNT, MAX_SEED
@@ -24,7 +25,7 @@ Bundle = Annotated[
     Path,
     typer.Argument(
         metavar="BUNDLE",
-        help="A directory of documents; or a deploy file, for its bundles, constraints and values together",
+        help="A directory of documents; or a deploy file, for its bundles, constraints, values and horizon",
     ),
 ]
 Seed = Annotated[
@@ -43,7 +44,11 @@ class SearchOptions(NamedTuple):
     ] = None
     horizon: Annotated[
         int | None,
-        typer.Option(min=1, max=MAX_HORIZON, help="Look-ahead in decisions; else the environment document's"),
+        typer.Option(
+            min=1,
+            max=MAX_HORIZON,
+            help="Look-ahead in decisions; else the deploy file's, or the environment document's",
+        ),
     ] = None
     seed: Seed = 1
     planner: Annotated[
@@ -55,11 +60,15 @@ class SearchOptions(NamedTuple):
         typer.Option("--policy", help="Decide by this policy of `aos solve` instead of searching"),
     ] = None
 
-    @property
-    def search(self) -> Search:
-        """The search; PlanningError where there is a policy that cannot be read."""
+    def search_in(self, bundle: Path) -> Search:
+        """The search for decisions in a bundle or a deploy file, whose horizon counts where none is given.
+
+        PlanningError where there is a policy that cannot be read, and the errors of `read_deploy_file`.
+        """
         fields = self._asdict()
         policy = fields.pop("policy")
+        if self.horizon is None and (deployment := deployment_at(bundle)) is not None:
+            fields["horizon"] = deployment.file.solver.horizon
         return following(Search(**fields), policy)
 
 

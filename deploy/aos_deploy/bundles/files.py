@@ -97,16 +97,11 @@ class Planned(msgspec.Struct, frozen=True):
 
 
 def planned_of(path: Path) -> Planned:
-    """Reads a bundle, or the bundles of a deploy file; errors are those of `read_deploy_file`.
-
-    A folder with no document and a deploy file stands for that file, as it does for `aos-up`.
-    """
-    if path.is_dir() and not read_bundle_files(path)[0] and next(deploy_files_in(path), None):
-        path = deploy_file_at(path)
-    if path.suffix not in (".yaml", ".yml") or not path.is_file():
+    """Reads a bundle, or the bundles of a deploy file; errors are those of `read_deploy_file`."""
+    deployment = deployment_at(path)
+    if deployment is None:
         files, remarks = read_bundle_files(path)
         return Planned(files, tuple(remarks))
-    deployment = read_deploy_file(path)
     together = files_of_deployment(deployment)
     return Planned(
         together.files,
@@ -114,6 +109,17 @@ def planned_of(path: Path) -> Planned:
         values=deployment.mission_values,
         sources=(deployment.path,),
     )
+
+
+def deployment_at(path: Path) -> Deployment | None:
+    """Reads a deploy file, as `read_deploy_file` does; None for a bundle.
+
+    A folder with no document and a deploy file stands for that file, as it does for `aos-up`.
+    """
+    if path.is_dir() and not read_bundle_files(path)[0] and next(deploy_files_in(path), None):
+        path = deploy_file_at(path)
+    is_deploy_file = path.suffix in (".yaml", ".yml") and path.is_file()
+    return read_deploy_file(path) if is_deploy_file else None
 
 
 def project_at(path: Path, *, hint: str = MEND) -> tuple[Planned, Project, tuple[Diagnostic, ...]]:

@@ -71,7 +71,7 @@ def plan(
     supposed = _suppositions(belief or ())
     if exact and deciding.policy is not None:
         raise typer.BadParameter("it excludes --exact", param_hint="--policy")
-    search = deciding.search
+    search = deciding.search_in(bundle)
 
     async def decide(engine: Engine) -> Decision:
         with waiting("deciding") as tell:
@@ -81,7 +81,7 @@ def plan(
             if remark := remark_on_start(await engine.summary()):
                 typer.echo(f"aos: {remark}", err=True)
             if exact:
-                return await _exact_decision(engine, deciding.horizon)
+                return await _exact_decision(engine, search.horizon)
             return await _searched_decision(engine, search)
 
     decision = planning_options.with_engine(bundle, deciding.seed, given, decide)

@@ -38,7 +38,7 @@ Target = Annotated[
     Path,
     typer.Argument(
         metavar="BUNDLE",
-        help="A directory of documents; a deploy file, for its bundles, constraints and values together; or, "
+        help="A directory of documents; a deploy file, for its bundles, constraints, values and horizon; or, "
         "with --policy, a .pomdp or .pomdpx file",
     ),
 ]
@@ -96,9 +96,8 @@ def simulate(
             player = _problem_player(bundle, deciding.policy, missions.step_limit, given)
             _play_problem(player, range(first, first + runs), done, with_states=states)
         else:
-            play = partial(
-                _play, search=deciding.search, limits=limits, runs=runs, with_states=states, done=done
-            )
+            search = deciding.search_in(bundle)
+            play = partial(_play, search=search, limits=limits, runs=runs, with_states=states, done=done)
             planning_options.with_engine(bundle, first, given, play)
     except KeyboardInterrupt:
         was_stopped = True
