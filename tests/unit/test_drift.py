@@ -1,18 +1,83 @@
 import math
+import random
+from collections.abc import Mapping
 
 import msgspec
 import pytest
 from decision_records import decision_record
-from drift_truth import BELIEF, SKILLS, alarm_of, silent, use
 from msgspec.structs import replace
 
-from aos_protocol.messages import ActivationId, DriftTests, Outcome, PredictedObservation
+from aos_protocol.messages import (
+    ActivationId,
+    BeliefSummary,
+    DriftTests,
+    ModelDrift,
+    Outcome,
+    PredictedObservation,
+)
 from aos_runtime.disk.journal import JournalRow
 from aos_solver.mission.records.memory import folded
 from aos_solver.mission.rules.drift import FALSE_ALARMS, after_use, begun, drifts, text_of
 
 RIGHT = {"taken": 0.9, "missed": 0.1}
 WRONG = {"taken": 0.6, "missed": 0.4}
+Odds = Mapping[str, float]
+"""The probability of each response."""
+
+BELIEF = BeliefSummary((), 0.0, 0.0, 0.0, 2, True)
+
+
+def use(
+    tests: DriftTests, skill: str, modelled: Odds, response: str
+) -> tuple[DriftTests, tuple[ModelDrift, ...]]:
+    predicted = tuple(PredictedObservation(name, odds) for name, odds in modelled.items())
+    decision = decision_record(0, skill=skill, model_digest="d", predicted=predicted, belief=BELIEF)
+    outcome = Outcome(ActivationId("m", 1), skill, "observed", response)
+    after = after_use(tests, decision, replace(decision, outcome=outcome))
+    return after, drifts(tests, after, skill)
+
+
+def drawn(odds: Odds, draw: random.Random) -> str:
+    return draw.choices([*odds], [*odds.values()])[0]
+
+
+def alarm_of(
+    seed: int, modelled: Odds, real: Odds, uses: int, *, others: int = 0, right_before: int = 0
+) -> ModelDrift | None:
+    """The first alarm of a skill within so many uses, after some in which the model was right.
+
+    There are as many `others`, which the model has right and which are not used.
+    """
+    draw = random.Random(seed)
+    skills = {"pick": [*modelled], **{f"other{number}": ["yes", "no"] for number in range(others)}}
+    tests = begun("d", skills)
+    for number in range(right_before + uses):
+        odds = modelled if number < right_before else real
+        tests, alarms = use(tests, "pick", modelled, drawn(odds, draw))
+        if alarms:
+            return alarms[0]
+    return None
+
+
+def silent(seed: int, skills: Mapping[str, Odds], uses: int) -> bool:
+    draw = random.Random(seed)
+    tests = begun("d", {skill: [*odds] for skill, odds in skills.items()})
+    for _ in range(uses):
+        skill = draw.choice([*skills])
+        weights = {name: odds * draw.uniform(0.2, 1.0) for name, odds in skills[skill].items()}
+        modelled = {name: weight / sum(weights.values()) for name, weight in weights.items()}
+        tests, alarms = use(tests, skill, modelled, drawn(modelled, draw))
+        if alarms:
+            return False
+    return True
+
+
+SKILLS: dict[str, Odds] = {
+    "pick": {"taken": 0.9, "missed": 0.1},
+    "look": {"left": 0.3, "right": 0.3, "nothing": 0.4},
+    "go": {"arrived": 0.97, "lost": 0.02, "blocked": 0.01},
+    "serve": {"delivered": 0.5, "not_delivered": 0.5},
+}
 
 
 def test_a_skill_of_0_9_that_is_0_6_alarms_within_60_uses():

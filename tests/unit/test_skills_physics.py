@@ -1,13 +1,9 @@
-import json
-import subprocess
-import sys
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 from msgspec.structs import replace
-from places import DEPLOY, ROOT
-from processes import COMMAND_S
+from places import DEPLOY
 
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.armadillo import KIND
@@ -92,18 +88,6 @@ def test_a_misplaced_can_stays_and_may_be_picked_again(make: Make, file: Armadil
     world.file = with_misplaced_easy_can(file, 0.0)
     call(world, "/pick")
     assert world.is_holding
-
-
-def test_the_frequencies_are_json_and_nothing_else():
-    module = "aos_skills.pybullet.worlds.armadillo.frequencies"
-    command = [sys.executable, "-m", module, "deploy/worlds/armadillo.yaml"]
-    ended = subprocess.run(
-        [*command, "1", "--json"], cwd=ROOT, capture_output=True, timeout=COMMAND_S, check=True
-    )
-    counts = json.loads(ended.stdout)
-    assert counts["picks"] == 1
-    assert sum(counts["easy"].values()) == sum(counts["hard"].values()) == 1
-    assert b"of 1 picks" in ended.stderr
 
 
 def test_an_arm_that_stays_out_is_reported_and_hurts_whoever_is_served(make: Make):

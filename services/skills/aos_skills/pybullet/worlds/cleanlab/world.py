@@ -76,16 +76,6 @@ class CleanLab(World):
             if z < BIN_TOP_M and any(max(abs(x - a), abs(y - b)) < BIN_HALF_M for a, b in centres)
         ]
 
-    def cup_in_reach(self) -> int | None:
-        """A cup that stands on the table in front of the robot."""
-        x, y, yaw = self.robot.base.place
-        at_hand = (x + AHEAD_M * math.cos(yaw), y + AHEAD_M * math.sin(yaw))
-        for cup in self.cups.values():
-            cup_x, cup_y, _ = self.scene.place(cup)
-            if self._is_standing(cup) and math.dist(at_hand, (cup_x, cup_y)) < 0.2:
-                return cup
-        return None
-
     def _is_standing(self, cup: int) -> bool:
         """Returns whether the cup stands on a table and is not in the hand."""
         _, _, z = self.scene.place(cup)
