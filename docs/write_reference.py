@@ -1,8 +1,9 @@
-"""Writes what follows from the sources: errors.md, colours, tables of other pages.
+"""Writes what follows from the sources: errors.md, tables of other pages.
 
 `python docs/write_reference.py` writes them, `--check` only says whether they are current (exit code 1 if
-not). In http-api.md, languages.md, limits.md and protocol.md the text between `<!-- generated: NAME -->` and
-`<!-- end -->` is replaced; the rest is written by hand.
+not), and `--notebook` prints the code of python.md as a notebook. In http-api.md, languages.md, limits.md and
+protocol.md the text between `<!-- generated: NAME -->` and `<!-- end -->` is replaced; the rest is written by
+hand.
 """
 
 import json
@@ -14,7 +15,6 @@ from pathlib import Path
 from limits_table import limits_table
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
-from aos_editor.textmate_grammar import textmate_grammar
 from aos_gateway.api.table import OPERATIONS
 from aos_language.reading.sdl_text import Word
 from aos_language.reading.sdl_words import GRAMMARS
@@ -182,13 +182,14 @@ def pages() -> dict[Path, str]:
     generated_in_part = [DOCS / name for name in ("http-api.md", "languages.md", "limits.md", "protocol.md")]
     return {
         DOCS / "errors.md": errors_page(),
-        DOCS / "examples/vscode/syntaxes/aos.tmLanguage.json": textmate_grammar(),
-        DOCS / "notebook.ipynb": notebook((DOCS / "python.md").read_text(encoding="utf-8")),
         **{page: with_generated_parts(page.read_text(encoding="utf-8")) for page in generated_in_part},
     }
 
 
 def main() -> int:
+    if "--notebook" in sys.argv[1:]:
+        sys.stdout.write(notebook((DOCS / "python.md").read_text(encoding="utf-8")))
+        return 0
     stale = [
         (page, text)
         for page, text in pages().items()

@@ -42,7 +42,7 @@ def textmate_grammar() -> str:
         ],
         "repository": {"own": {"patterns": own}, "outside": {"patterns": [line, comment]}},
     }
-    return json.dumps(grammar) + "\n"
+    return json.dumps(grammar)
 
 
 def _is(word: tuple[str, Any], body: Body) -> bool:

@@ -35,16 +35,19 @@ print(json.dumps([len(names["behind_left"]), names["state"].held_by != "", names
 
 
 def test_the_notebook_starts_follows_steers_studies_and_plots(tmp_path):
+    written = finished(sys.executable, ROOT / "docs/write_reference.py", "--notebook")
     (tmp_path / "deploy").symlink_to(DEPLOY)
-    (tmp_path / "docs").mkdir()
+    notebook = tmp_path / "docs" / "tiger.ipynb"
+    notebook.parent.mkdir()
+    notebook.write_text(written.stdout)
     done = finished(
         sys.executable,
         "-W",
         "ignore::UserWarning",
         "-c",
         RUN_CELLS,
-        ROOT / "docs/notebook.ipynb",
-        cwd=tmp_path / "docs",
+        notebook,
+        cwd=notebook.parent,
         env=environment(tmp_path),
     )
     assert done.returncode == 0, done.stdout + done.stderr

@@ -4,7 +4,8 @@ import shutil
 from typing import Any
 
 import pytest
-from places import BUNDLES, ROOT
+from commands import aos
+from places import BUNDLES
 
 from aos_editor.checking import check_folder
 from aos_editor.documents import meaning_at, outline, proposals_at
@@ -57,8 +58,7 @@ def test_files_that_are_no_sdl_have_no_words():
 
 @pytest.fixture(scope="module")
 def colours() -> dict[str, Any]:
-    path = ROOT / "docs/examples/vscode/syntaxes/aos.tmLanguage.json"
-    grammar: dict[str, Any] = json.loads(path.read_text())
+    grammar: dict[str, Any] = json.loads(aos("language-server", "--grammar").stdout)
     return grammar
 
 
