@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator
 
 import tree_sitter
 
-from aos_language.cpp.nodes import below, child_of, operator_of, text_of
+from aos_language.cpp.nodes import below, child_of, field_of, operator_of, text_of
 from aos_language.cpp.tree import tree_of
 
 _BEFORE = "void f() {"
@@ -47,7 +47,7 @@ def _never_run(node: tree_sitter.Node, null: Collection[str]) -> Iterator[tuple[
                         return
         case "if_statement":
             truth = _truth(child_of(node, "condition"), null)
-            body, otherwise = child_of(node, "consequence"), node.child_by_field_name("alternative")
+            body, otherwise = child_of(node, "consequence"), field_of(node, "alternative")
             if truth is False:
                 yield body.start_byte, body.end_byte, ";"
             elif truth and otherwise is not None:

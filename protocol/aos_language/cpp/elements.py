@@ -2,7 +2,7 @@
 
 import tree_sitter
 
-from aos_language.cpp.nodes import child_of, names_of, text_of
+from aos_language.cpp.nodes import child_of, field_of, names_of, text_of
 
 _OF_FILLED = frozenset({"back", "front", "pop", "pop_back", "pop_front", "top"})
 _BEGINNINGS = frozenset({"begin", "cbegin", "crbegin", "rbegin"})
@@ -50,5 +50,5 @@ def _named(container: tree_sitter.Node) -> tree_sitter.Node | None:
 
 
 def _is_one_of(function: tree_sitter.Node, methods: frozenset[str]) -> bool:
-    method = names_of(function.child_by_field_name("field"))[-1:]
+    method = names_of(field_of(function, "field"))[-1:]
     return not methods.isdisjoint(method) and text_of(function.children[1]) == "."

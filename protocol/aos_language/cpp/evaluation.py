@@ -10,7 +10,7 @@ from aos_language.cpp.facts import (
     READING_METHODS,
 )
 from aos_language.cpp.flow import is_draw, names_in
-from aos_language.cpp.nodes import below, operator_of, text_of
+from aos_language.cpp.nodes import below, field_of, operator_of, text_of
 from aos_language.cpp.ways import State
 
 _READING_METHODS = (CHANGING_METHODS | HANDLE_METHODS | READING_METHODS) - EXCHANGING_METHODS
@@ -46,21 +46,21 @@ class Evaluation:
         elif node.type == "call_expression":
             self._call(node, state)
         elif node.type == "binary_expression" and operator_of(node) == ">>":
-            left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+            left, right = field_of(node, "left"), field_of(node, "right")
             self.expression(left, state)
             is_set = right is not None and right.type == "identifier" and self._is_stream(left)
             (self.may_be_set if is_set else self.expression)(right, state)
         elif node.type == "binary_expression" and operator_of(node) in ("&&", "||"):
-            left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+            left, right = field_of(node, "left"), field_of(node, "right")
             self.expression(left, state)
             self._sometimes(left, [right], state)
         elif node.type == "conditional_expression":
-            condition = node.child_by_field_name("condition")
+            condition = field_of(node, "condition")
             self.expression(condition, state)
-            parts = [node.child_by_field_name("consequence"), node.child_by_field_name("alternative")]
+            parts = [field_of(node, "consequence"), field_of(node, "alternative")]
             self._sometimes(condition, parts, state)
         elif node.type == "field_expression":
-            self.expression(node.child_by_field_name("argument"), state)
+            self.expression(field_of(node, "argument"), state)
         else:
             for child in node.named_children:
                 self.expression(child, state)
@@ -75,7 +75,7 @@ class Evaluation:
         self.conditions.pop()
 
     def _assign(self, node: tree_sitter.Node, state: State) -> None:
-        left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+        left, right = field_of(node, "left"), field_of(node, "right")
         while left is not None and left.type == "parenthesized_expression" and left.named_child_count == 1:
             left = left.named_children[0]
         self.expression(right, state)
@@ -85,13 +85,13 @@ class Evaluation:
             self.expression(left, state)
 
     def _call(self, node: tree_sitter.Node, state: State) -> None:
-        function = node.child_by_field_name("function")
-        arguments = node.child_by_field_name("arguments")
+        function = field_of(node, "function")
+        arguments = field_of(node, "arguments")
         name = text_of(function).split("<")[0].removeprefix("std::") if function is not None else ""
         is_reading = name in READING_FUNCTIONS or is_draw(node)
         if function is not None and function.type == "field_expression":
-            self.expression(function.child_by_field_name("argument"), state)
-            method = function.child_by_field_name("field")
+            self.expression(field_of(function, "argument"), state)
+            method = field_of(function, "field")
             is_reading |= method is not None and text_of(method) in _READING_METHODS
         for argument in arguments.named_children if arguments is not None else ():
             if argument.type == "identifier" and not is_reading:
@@ -102,7 +102,7 @@ class Evaluation:
     def _is_stream(self, node: tree_sitter.Node | None) -> bool:
         """Returns whether the first operand of `text >> first >> second` may be a stream, which sets them."""
         while node is not None and node.type == "binary_expression" and operator_of(node) == ">>":
-            node = node.child_by_field_name("left")
+            node = field_of(node, "left")
         return node is not None and node.type == "identifier" and text_of(node) not in self.declared
 
     def may_be_set(self, node: tree_sitter.Node | None, state: State) -> None:

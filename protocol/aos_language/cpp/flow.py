@@ -20,7 +20,7 @@ from aos_language.cpp.facts import (
     Cpp,
 )
 from aos_language.cpp.keywords import STATES
-from aos_language.cpp.nodes import below, picks_member, text_of
+from aos_language.cpp.nodes import below, field_of, picks_member, text_of
 from aos_language.cpp.tree import tree_of
 
 
@@ -147,22 +147,22 @@ class _Reading:
         elif node.type == "declaration":
             self._declaration(node, control)
         elif node.type == "if_statement":
-            inner = self._condition(node.child_by_field_name("condition"), control)
-            self.statement(node.child_by_field_name("consequence"), inner, switch_control)
-            self.statement(node.child_by_field_name("alternative"), inner, switch_control)
+            inner = self._condition(field_of(node, "condition"), control)
+            self.statement(field_of(node, "consequence"), inner, switch_control)
+            self.statement(field_of(node, "alternative"), inner, switch_control)
         elif node.type in ("while_statement", "do_statement"):
-            inner = self._loop_condition(node.child_by_field_name("condition"), control)
-            self.statement(node.child_by_field_name("body"), inner, None)
+            inner = self._loop_condition(field_of(node, "condition"), control)
+            self.statement(field_of(node, "body"), inner, None)
         elif node.type == "for_statement":
             self._for(node, control)
         elif node.type == "for_range_loop":
             self._range_for(node, control)
         elif node.type == "switch_statement":
-            inner = self._condition(node.child_by_field_name("condition"), control)
-            self.statement(node.child_by_field_name("body"), inner, inner)
+            inner = self._condition(field_of(node, "condition"), control)
+            self.statement(field_of(node, "body"), inner, inner)
         elif node.type == "case_statement":
             for child in node.named_children:
-                if child != node.child_by_field_name("value"):
+                if child != field_of(node, "value"):
                     self.statement(child, control, switch_control)
         elif node.type == "break_statement" and switch_control is not None and control == switch_control:
             pass
@@ -187,43 +187,43 @@ class _Reading:
         return inner
 
     def _for(self, node: tree_sitter.Node, control: _Control) -> None:
-        first = node.child_by_field_name("initializer")
+        first = field_of(node, "initializer")
         if first is not None and first.type == "declaration":
             self._declaration(first, control)
         elif first is not None:
             self._expression(first, control)
-        inner = self._loop_condition(node.child_by_field_name("condition"), control)
-        update = node.child_by_field_name("update")
+        inner = self._loop_condition(field_of(node, "condition"), control)
+        update = field_of(node, "update")
         if update is not None:
             self._expression(update, inner)
-        self.statement(node.child_by_field_name("body"), inner, None)
+        self.statement(field_of(node, "body"), inner, None)
 
     def _range_for(self, node: tree_sitter.Node, control: _Control) -> None:
-        whole = node.child_by_field_name("right")
-        declarator = node.child_by_field_name("declarator")
+        whole = field_of(node, "right")
+        declarator = field_of(node, "declarator")
         if whole is None or declarator is None:
             self.used |= control | names_in(node)
             return
-        self.statement(node.child_by_field_name("initializer"), control, None)
+        self.statement(field_of(node, "initializer"), control, None)
         self._no_effects(whole, control)
         inner = control | names_in(whole)
         self.looped |= inner
-        kind = node.child_by_field_name("type")
+        kind = field_of(node, "type")
         is_handle = self._may_refer(kind, declarator) or _gives_handle(whole)
         self._declare(declarator, inner, is_handle, of=names_in(whole))
-        self.statement(node.child_by_field_name("body"), inner, None)
+        self.statement(field_of(node, "body"), inner, None)
 
     def _declaration(self, node: tree_sitter.Node, control: _Control) -> None:
         for declarator in node.children_by_field_name("declarator"):
-            value = declarator.child_by_field_name("value") if declarator.type == "init_declarator" else None
-            inner = declarator.child_by_field_name("declarator") if value is not None else declarator
+            value = field_of(declarator, "value") if declarator.type == "init_declarator" else None
+            inner = field_of(declarator, "declarator") if value is not None else declarator
             if inner is None:
                 self.used |= control | names_in(node)
                 continue
             initial = names_in(value) if value is not None else frozenset()
             if value is not None:
                 self._no_effects(value, control)
-            kind = node.child_by_field_name("type")
+            kind = field_of(node, "type")
             is_handle = self._may_refer(kind, inner) or (
                 value is not None and (_gives_handle(value) or _has_effects(value, self._functions))
             )
@@ -260,12 +260,12 @@ class _Reading:
             for child in node.named_children:
                 self._expression(child, control)
         elif node.type == "assignment_expression":
-            value = node.child_by_field_name("right")
-            self._change(node, node.child_by_field_name("left"), [value], control)
+            value = field_of(node, "right")
+            self._change(node, field_of(node, "left"), [value], control)
         elif node.type == "update_expression":
-            self._change(node, node.child_by_field_name("argument"), [], control)
+            self._change(node, field_of(node, "argument"), [], control)
         elif (target := _changed_by_method(node)) is not None:
-            arguments = node.child_by_field_name("arguments")
+            arguments = field_of(node, "arguments")
             self._change(node, target, arguments.named_children if arguments is not None else [], control)
         elif _has_effects(node, self._functions):
             self.used |= control | names_in(node)
@@ -321,7 +321,7 @@ def _names_in(node: tree_sitter.Node) -> Iterator[Name]:
     waiting = [node]
     while waiting:
         part = waiting.pop()
-        field = part.child_by_field_name("field") if picks_member(part) else None
+        field = field_of(part, "field") if picks_member(part) else None
         if field is not None:
             yield Name(text_of(field))
         if part.type == "field_expression" and (name := _of_state(part)) is not None:
@@ -340,7 +340,7 @@ def _names_in(node: tree_sitter.Node) -> Iterator[Name]:
 def is_draw(node: tree_sitter.Node) -> bool:
     """Returns whether a piece of the tree is a call such as `AOS.Bernoulli(p)` or
     `AOSUtils::SampleDiscrete(w)`."""
-    function = node.child_by_field_name("function") if node.type == "call_expression" else None
+    function = field_of(node, "function") if node.type == "call_expression" else None
     return function is not None and _DRAW.fullmatch(text_of(function)) is not None
 
 
@@ -352,7 +352,7 @@ def _of_state(node: tree_sitter.Node) -> Name | None:
     """The variable behind `state.x`."""
     if picks_member(node):
         return None
-    argument, field = node.child_by_field_name("argument"), node.child_by_field_name("field")
+    argument, field = field_of(node, "argument"), field_of(node, "field")
     while argument is not None and argument.type == "parenthesized_expression":
         argument = argument.named_children[0] if argument.named_child_count == 1 else None
     if argument is None or field is None or argument.type != "identifier" or text_of(argument) not in STATES:
@@ -378,9 +378,9 @@ def _root(node: tree_sitter.Node | None) -> Name | None:
         if node.type == "parenthesized_expression":
             node = node.named_children[0] if node.named_child_count == 1 else None
         elif node.type in ("field_expression", "subscript_expression", "pointer_expression"):
-            node = node.child_by_field_name("argument")
+            node = field_of(node, "argument")
         elif node.type == "call_expression":
-            function = node.child_by_field_name("function")
+            function = field_of(node, "function")
             node = function if function is not None and function.type == "field_expression" else None
         else:
             return None
@@ -389,8 +389,8 @@ def _root(node: tree_sitter.Node | None) -> Name | None:
 
 def _method_of(call: tree_sitter.Node) -> str:
     """The name of the method that a call calls; empty where it calls something else."""
-    function = call.child_by_field_name("function") if call.type == "call_expression" else None
-    field = function.child_by_field_name("field") if function is not None else None
+    function = field_of(call, "function") if call.type == "call_expression" else None
+    field = field_of(function, "field") if function is not None else None
     return text_of(field).split("<")[0] if field is not None else ""
 
 
@@ -399,8 +399,8 @@ def _changed_by_method(node: tree_sitter.Node) -> tree_sitter.Node | None:
     method = _method_of(node)
     if method not in CHANGING_METHODS - EXCHANGING_METHODS:
         return None
-    function = node.child_by_field_name("function")
-    return function.child_by_field_name("argument") if function is not None else None
+    function = field_of(node, "function")
+    return field_of(function, "argument") if function is not None else None
 
 
 def _has_effects(node: tree_sitter.Node, functions: _Functions) -> bool:
@@ -418,7 +418,7 @@ def _is_effect(node: tree_sitter.Node, functions: _Functions) -> bool:
 
 def _may_change(call: tree_sitter.Node, functions: _Functions) -> bool:
     """Returns whether a call may change its object or an argument."""
-    function = call.child_by_field_name("function")
+    function = field_of(call, "function")
     if function is None or function.type == "primitive_type":
         return False
     if method := _method_of(call):
@@ -430,13 +430,13 @@ def _may_change(call: tree_sitter.Node, functions: _Functions) -> bool:
     is_global = function.type in ("qualified_identifier", "template_function") or name in functions.shared
     if not is_global:
         return True  # A lambda changes what it captures.
-    return bool(names_in(call.child_by_field_name("arguments")))
+    return bool(names_in(field_of(call, "arguments")))
 
 
 def _gives_handle(node: tree_sitter.Node) -> bool:
     """Returns whether the value of an expression may be an iterator or a pointer."""
     for part in below(node):
-        field = part.child_by_field_name("field") if part.type == "field_expression" else None
+        field = field_of(part, "field") if part.type == "field_expression" else None
         if field is not None and (text_of(field) in HANDLE_METHODS or text_of(field).endswith("Objects")):
             return True
     return False

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 import tree_sitter
 
 from aos_language.cpp.facts import Cpp
-from aos_language.cpp.nodes import below, field_text, operator_of, text_of
+from aos_language.cpp.nodes import below, field_of, field_text, operator_of, text_of
 from aos_language.cpp.tokens import Extent, Lines
 from aos_language.cpp.tree import tree_of
 
@@ -80,7 +80,7 @@ class _Reading:
     def want_rewards(self) -> None:
         """Reads all statements that earn something or reach a goal."""
         for _, node in self._nodes:
-            left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+            left, right = field_of(node, "left"), field_of(node, "right")
             if node.type != "assignment_expression" or left is None or right is None:
                 continue
             is_goal = text_of(left) == "__isGoalState" and not _is_punished(node)
@@ -95,7 +95,7 @@ class _Reading:
 
     def want(self, node: tree_sitter.Node, truth: bool) -> None:
         """Counts the conditions under which an expression is so."""
-        left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+        left, right = field_of(node, "left"), field_of(node, "right")
         if node.type == "parenthesized_expression":
             self.want(node.named_children[0], truth)
         elif node.type == "unary_expression" and operator_of(node) == "!":
@@ -105,7 +105,7 @@ class _Reading:
             assert right is not None
             self.want(left, truth)
             self.want(right, truth)
-            sign = node.child_by_field_name("operator")
+            sign = field_of(node, "operator")
             if sign is not None and _cannot_fail(right):
                 self._edit(node, sign.start_byte, sign.end_byte, _ALL[truth])
         elif node.type == "identifier" and text_of(node) in self._locals:
@@ -115,8 +115,8 @@ class _Reading:
 
     def _want_choice(self, node: tree_sitter.Node, truth: bool) -> bool:
         """Counts what a choice between two values depends on, if one of them is what is wanted."""
-        condition = node.child_by_field_name("condition")
-        first, second = (node.child_by_field_name(name) for name in ("consequence", "alternative"))
+        condition = field_of(node, "condition")
+        first, second = (field_of(node, name) for name in ("consequence", "alternative"))
         if condition is None or first is None or second is None:
             return False
         if _is_positive(first) != _is_positive(second):
@@ -136,7 +136,7 @@ class _Reading:
 
     def _want_number(self, node: tree_sitter.Node, truth: bool) -> bool:
         """Counts what a number is made of that is compared, as `closed == 5`; returns whether it is one."""
-        left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+        left, right = field_of(node, "left"), field_of(node, "right")
         operator = operator_of(node)
         if left is None or right is None or operator not in _OPPOSITE or left.type != "identifier":
             return False
@@ -182,9 +182,9 @@ class _Reading:
         while (parent := child.parent) is not None:
             if truth:
                 self._want_no_exit(parent, child)
-            condition = parent.child_by_field_name("condition")
+            condition = field_of(parent, "condition")
             if parent.type == "if_statement" and condition is not None and child != condition:
-                is_first = parent.child_by_field_name("consequence") == child
+                is_first = field_of(parent, "consequence") == child
                 self.want(condition.named_children[-1], truth == is_first)
                 if not truth:
                     self._drop_break(child)
@@ -195,7 +195,7 @@ class _Reading:
         for statement in block.named_children:
             if statement == before:
                 return
-            then, condition = (statement.child_by_field_name(name) for name in ("consequence", "condition"))
+            then, condition = (field_of(statement, name) for name in ("consequence", "condition"))
             if statement.type != "if_statement" or then is None or condition is None:
                 continue
             if re.fullmatch(r"\{?\s*(?:return|continue);\s*\}?", text_of(then)):
@@ -213,9 +213,9 @@ class _Reading:
         """The declarations and assignments of a local variable that give it a value."""
         for _, node in self._nodes:
             if node.type == "init_declarator":
-                target, value = (node.child_by_field_name(field) for field in ("declarator", "value"))
+                target, value = (field_of(node, field) for field in ("declarator", "value"))
             elif node.type == "assignment_expression":
-                target, value = (node.child_by_field_name(field) for field in ("left", "right"))
+                target, value = (field_of(node, field) for field in ("left", "right"))
             else:
                 continue
             if target is not None and value is not None and text_of(target) == name:
@@ -240,7 +240,7 @@ class _Reading:
 def _declared(node: tree_sitter.Node) -> Iterator[str]:
     if node.type == "declaration":
         for declarator in node.children_by_field_name("declarator"):
-            inner = declarator.child_by_field_name("declarator")
+            inner = field_of(declarator, "declarator")
             yield text_of(inner if inner is not None else declarator)
 
 

@@ -2,7 +2,7 @@
 
 import tree_sitter
 
-from aos_language.cpp.nodes import below, text_of
+from aos_language.cpp.nodes import below, field_of, text_of
 
 _PLAIN = frozenset({"field_expression", "identifier", "number_literal", "string_literal", "true", "false"})
 """Expressions that do nothing but have a value."""
@@ -27,7 +27,7 @@ def idle_parts(statement: tree_sitter.Node) -> tuple[list[tree_sitter.Node], lis
 
 def is_turned(assignment: tree_sitter.Node) -> bool:
     """Returns whether a `+` stands right behind the sign, as in `x =+ 1`."""
-    operator, right = (assignment.child_by_field_name(part) for part in ("operator", "right"))
+    operator, right = (field_of(assignment, part) for part in ("operator", "right"))
     if operator is None or right is None or operator.end_byte != right.start_byte:
         return False
     return text_of(right).startswith("+") and not text_of(right).startswith("++")

@@ -10,7 +10,7 @@ import tree_sitter
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import is_draw
-from aos_language.cpp.nodes import below, operator_of, text_of
+from aos_language.cpp.nodes import below, field_of, operator_of, text_of
 from aos_language.cpp.tree import tree_of
 
 _CONTINUOUS = ("SampleNormal", "SampleUniform")
@@ -49,7 +49,7 @@ def _is_added_to(node: tree_sitter.Node) -> bool:
     return (
         parent is not None
         and parent.type == "assignment_expression"
-        and parent.child_by_field_name("left") == node
+        and field_of(parent, "left") == node
         and operator_of(parent) in ("=", "+=", "-=")
         and parent.parent is not None
         and parent.parent.type == "expression_statement"
@@ -80,7 +80,7 @@ class _Linear:
         if parent is None:
             return False
         if parent.type == "assignment_expression":
-            target = parent.child_by_field_name("left")
+            target = field_of(parent, "left")
             return target is not None and text_of(target) == self._result and _is_added_to(target)
         return parent.type == "init_declarator" and self._follows_local(parent)
 
@@ -90,10 +90,10 @@ class _Linear:
         if parent.type == "unary_expression":
             return operator_of(parent) in ("-", "+")
         if parent.type == "conditional_expression":
-            return node != parent.child_by_field_name("condition")
+            return node != field_of(parent, "condition")
         if parent.type != "binary_expression":
             return False
-        left, right = parent.child_by_field_name("left"), parent.child_by_field_name("right")
+        left, right = field_of(parent, "left"), field_of(parent, "right")
         operator = operator_of(parent)
         if left is None or right is None:
             return False
@@ -105,8 +105,8 @@ class _Linear:
     def _follows_local(self, declarator: tree_sitter.Node) -> bool:
         """Returns whether it declares a plain number, once, that never changes and is passed on by each
         use."""
-        name, declaration = declarator.child_by_field_name("declarator"), declarator.parent
-        kind = declaration.child_by_field_name("type") if declaration is not None else None
+        name, declaration = field_of(declarator, "declarator"), declarator.parent
+        kind = field_of(declaration, "type") if declaration is not None else None
         if name is None or name.type != "identifier" or kind is None or text_of(kind) not in _DOUBLE:
             return False
         text = text_of(name)
@@ -131,5 +131,5 @@ def _identifiers(node: tree_sitter.Node | None) -> Iterator[str]:
 
 def _function(draw: tree_sitter.Node) -> str:
     """The last name of what is called."""
-    function = draw.child_by_field_name("function")
+    function = field_of(draw, "function")
     return re.findall(r"\w+", text_of(function))[-1] if function is not None else ""

@@ -14,7 +14,7 @@ import tree_sitter
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.keywords import DRAW_SOURCES
-from aos_language.cpp.nodes import below, text_of
+from aos_language.cpp.nodes import below, field_of, text_of
 from aos_language.cpp.tree import tree_of
 
 
@@ -131,7 +131,7 @@ class _Reading:
         )
 
     def _head(self, loop: tree_sitter.Node) -> tuple[int, int] | None:
-        condition = loop.child_by_field_name("condition")
+        condition = field_of(loop, "condition")
         if condition is None:
             if loop.type != "for_statement":
                 return None
@@ -160,7 +160,7 @@ def _visible(
 ) -> frozenset[str] | None:
     """The variables that may change and that a loop's condition sees; None where its text does not tell."""
     visible: list[tuple[str, bool]] = []
-    initializer = loop.child_by_field_name("initializer")
+    initializer = field_of(loop, "initializer")
     if initializer is not None:
         visible += _declared(initializer)
     child, parent = loop, loop.parent
@@ -169,7 +169,7 @@ def _visible(
             visible += _parameters(parent)
             break
         if parent.type == "lambda_expression":
-            captures = parent.child_by_field_name("captures")
+            captures = field_of(parent, "captures")
             if captures is None or text_of(captures).replace(" ", "") != "[&]":
                 return None
             visible += _parameters(parent)
@@ -182,7 +182,7 @@ def _visible(
                 return None
             visible += _declared(sibling)
         if parent.type == "for_range_loop":
-            visible += _names_of_declarator(parent.child_by_field_name("declarator"))
+            visible += _names_of_declarator(field_of(parent, "declarator"))
         child, parent = parent, parent.parent
     names = [name for name, _ in visible]
     if len(names) != len(set(names)) or not (around | lambdas).isdisjoint(names):
@@ -200,7 +200,7 @@ def _is_in_function(loop: tree_sitter.Node) -> bool:
 
 
 def _parameters(function: tree_sitter.Node) -> list[tuple[str, bool]]:
-    parts = below(function.child_by_field_name("declarator"))
+    parts = below(field_of(function, "declarator"))
     return [found for part in parts if "parameter_declaration" in part.type for found in _declared(part)]
 
 
@@ -220,7 +220,7 @@ def _declared(node: tree_sitter.Node, *, of_lambdas: bool = True) -> list[tuple[
     }
     found = []
     for declarator in node.children_by_field_name("declarator"):
-        value = declarator.child_by_field_name("value")
+        value = field_of(declarator, "value")
         if not of_lambdas and _is_lambda(value):
             continue
         is_constant = bool(words & {"const", "constexpr"}) and "pointer" not in _inner(declarator).type
@@ -237,7 +237,7 @@ def _is_lambda(value: tree_sitter.Node | None) -> bool:
 def _inner(declarator: tree_sitter.Node) -> tree_sitter.Node:
     if declarator.type != "init_declarator":
         return declarator
-    return declarator.child_by_field_name("declarator") or declarator
+    return field_of(declarator, "declarator") or declarator
 
 
 def _names_of_declarator(declarator: tree_sitter.Node | None) -> list[tuple[str, bool]]:
@@ -248,7 +248,7 @@ def _names_of_declarator(declarator: tree_sitter.Node | None) -> list[tuple[str,
         if part.type == "identifier":
             found.append((text_of(part), False))
         elif part.type == "array_declarator":
-            inner = part.child_by_field_name("declarator")
+            inner = field_of(part, "declarator")
             waiting += [inner] if inner is not None else []
         elif part.type != "function_declarator":
             waiting += part.named_children
@@ -259,7 +259,7 @@ def _unset(node: tree_sitter.Node) -> Iterator[int]:
     """Yields the ends of the declaration's variables without a first value."""
     if node.type != "declaration" or any(child.type == "storage_class_specifier" for child in node.children):
         return
-    if node.child_by_field_name("value") is not None:  # `if (int n = count())`
+    if field_of(node, "value") is not None:  # `if (int n = count())`
         return
     for declarator in node.children_by_field_name("declarator"):
         if declarator.type in ("identifier", "array_declarator", "pointer_declarator"):
@@ -268,21 +268,21 @@ def _unset(node: tree_sitter.Node) -> Iterator[int]:
 
 def _counts(loop: tree_sitter.Node) -> bool:
     """Returns whether it is a `for` over a variable that only its last part changes."""
-    update, condition = loop.child_by_field_name("update"), loop.child_by_field_name("condition")
-    body = loop.child_by_field_name("body")
+    update, condition = field_of(loop, "update"), field_of(loop, "condition")
+    body = field_of(loop, "body")
     if loop.type != "for_statement" or update is None or condition is None or body is None:
         return False
     counters = {
         text_of(target)
         for part in below(update)
         if part.type in ("update_expression", "assignment_expression")
-        and (target := part.child_by_field_name("argument") or part.child_by_field_name("left")) is not None
+        and (target := field_of(part, "argument") or field_of(part, "left")) is not None
     }
     compared: set[str] = set()
     waiting = [condition]
     while waiting:
         part = waiting.pop()
-        operator = part.child_by_field_name("operator")
+        operator = field_of(part, "operator")
         if part.type == "binary_expression" and operator is not None and text_of(operator) in ("&&", "and"):
             waiting += part.named_children
         elif part.type == "binary_expression" and operator is not None and text_of(operator) in _COMPARISONS:
@@ -295,11 +295,11 @@ def _changed(body: tree_sitter.Node) -> set[str]:
     changed: set[str] = set()
     for part in below(body):
         if part.type in ("update_expression", "pointer_expression"):
-            changed |= _root(part.child_by_field_name("argument"))
+            changed |= _root(field_of(part, "argument"))
         elif part.type == "assignment_expression":
-            changed |= _root(part.child_by_field_name("left"))
+            changed |= _root(field_of(part, "left"))
         elif part.type == "init_declarator" and _inner(part).type == "reference_declarator":
-            changed |= _root(part.child_by_field_name("value"))
+            changed |= _root(field_of(part, "value"))
     return changed
 
 
@@ -307,7 +307,7 @@ def _root(place: tree_sitter.Node | None) -> set[str]:
     """The variable that a place is a part of: `a` of `a[i].b`."""
     while place is not None and place.type != "identifier":
         named = place.named_children[:1] if place.type == "parenthesized_expression" else []
-        place = place.child_by_field_name("argument") or next(iter(named), None)
+        place = field_of(place, "argument") or next(iter(named), None)
     return {text_of(place)} if place is not None else set()
 
 

@@ -9,9 +9,14 @@ def text_of(node: tree_sitter.Node) -> str:
     return (node.text or b"").decode("utf-8", "replace")
 
 
+def field_of(node: tree_sitter.Node, field: str) -> tree_sitter.Node | None:
+    """The part of a node in a field, such as `left`; None where it has none."""
+    return node.child_by_field_name(field)
+
+
 def field_text(node: tree_sitter.Node, field: str) -> str:
-    """The text of a node's field, such as `left`; empty where it has none."""
-    part = node.child_by_field_name(field)
+    """The text of a node's field; empty where it has none."""
+    part = field_of(node, field)
     return text_of(part) if part is not None else ""
 
 
@@ -36,7 +41,7 @@ def below(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
 
 def child_of(node: tree_sitter.Node, field: str) -> tree_sitter.Node:
     """The part of a node in a field; its first part where it has none."""
-    child = node.child_by_field_name(field)
+    child = field_of(node, field)
     return child if child is not None else node.children[0]
 
 
@@ -45,11 +50,11 @@ def names_of(node: tree_sitter.Node | None) -> tuple[str, ...]:
     parts: list[str] = []
     while node is not None:
         if node.type == "qualified_identifier":
-            scope = node.child_by_field_name("scope")
+            scope = field_of(node, "scope")
             parts += [text_of(scope).split("<")[0]] if scope is not None else []
-            node = node.child_by_field_name("name")
+            node = field_of(node, "name")
         elif node.type in ("template_function", "template_method", "template_type", "dependent_name"):
-            node = node.child_by_field_name("name") or next(iter(node.named_children), None)
+            node = field_of(node, "name") or next(iter(node.named_children), None)
         else:
             parts.append(text_of(node))
             node = None

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import tree_sitter
 
-from aos_language.cpp.nodes import below, field_text, operator_of, text_of
+from aos_language.cpp.nodes import below, field_of, field_text, operator_of, text_of
 
 _WHOLE = re.compile(r"0|[1-9][0-9]*")
 _ORDERS = ({"<", "<="}, {">", ">="})
@@ -43,8 +43,8 @@ def odd_parts(node: tree_sitter.Node) -> Iterator[Odd]:
             yield Odd(whole, f"nothing takes what `{function}` gives", f"Write `NAME = {text_of(whole)};`")
     elif node.type == "for_range_loop":
         yield from _copied(node)
-    elif node.type == "if_statement" and node.child_by_field_name("alternative") is None:
-        body = node.child_by_field_name("consequence")
+    elif node.type == "if_statement" and field_of(node, "alternative") is None:
+        body = field_of(node, "consequence")
         if body is not None and text_of(body) == ";":
             yield Odd(body, "this semicolon ends the `if`", "Take it out")
     elif node.type == "case_statement" and getattr(node.next_named_sibling, "type", "") == node.type:
@@ -56,12 +56,12 @@ def odd_parts(node: tree_sitter.Node) -> Iterator[Odd]:
 
 def _copied(loop: tree_sitter.Node) -> Iterator[Odd]:
     """Yields the copies of the state's elements that a loop only sets."""
-    declared = loop.child_by_field_name("declarator")
+    declared = field_of(loop, "declarator")
     if declared is None or not _OF_STATE.match(field_text(loop, "right")):
         return
     is_bound = declared.type == "structured_binding_declarator"
     for name in declared.named_children if is_bound else [declared]:
-        used = [part for part in below(loop.child_by_field_name("body")) if text_of(part) == text_of(name)]
+        used = [part for part in below(field_of(loop, "body")) if text_of(part) == text_of(name)]
         if used and all(_is_only_set(part, whole=is_bound) for part in used):
             yield Odd(
                 used[0], f"`{text_of(name)}` is a copy: this changes nothing", "Declare it with `auto&`"
@@ -77,7 +77,7 @@ def _is_only_set(part: tree_sitter.Node, *, whole: bool) -> bool:
     if above is None or above.parent is None or above.parent.type != "expression_statement":
         return False
     is_set = above.type in ("assignment_expression", "update_expression")
-    return whole and is_set and part in (above.children[0], above.child_by_field_name("argument"))
+    return whole and is_set and part in (above.children[0], field_of(above, "argument"))
 
 
 def _calculated(node: tree_sitter.Node) -> Iterator[Odd]:

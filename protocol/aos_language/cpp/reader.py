@@ -20,7 +20,7 @@ from aos_language.cpp.facts import (
     OddPart,
 )
 from aos_language.cpp.idle import idle_parts, is_turned
-from aos_language.cpp.nodes import below, child_of, names_of, operator_of, picks_member, text_of
+from aos_language.cpp.nodes import below, child_of, field_of, names_of, operator_of, picks_member, text_of
 from aos_language.cpp.odd import odd_parts
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 from aos_protocol.spelling import nearest
@@ -162,14 +162,14 @@ class TreeReader:
                 self._push(current.children)  # Such as two paths without the semicolon between them.
                 return (), None
             elif current.type == "field_expression":
-                parts += reversed(names_of(current.child_by_field_name("field")))
+                parts += reversed(names_of(field_of(current, "field")))
                 is_arrow = text_of(current.children[1]) == "->"
                 current = child_of(current, "argument")
                 if is_arrow:
                     self._dereferenced(current)
             elif current.type == "subscript_expression":
                 parts.append("[]")
-                indices = current.child_by_field_name("indices")
+                indices = field_of(current, "indices")
                 self._push([indices])
                 if indices is not None and is_checked(current, indices):
                     self._element(child_of(current, "argument"), self.extent(indices))
@@ -195,16 +195,16 @@ class TreeReader:
 
     def _push_template_arguments(self, node: tree_sitter.Node | None) -> None:
         while node is not None and node.type == "qualified_identifier":
-            node = node.child_by_field_name("name")
+            node = field_of(node, "name")
         if node is not None and node.type in ("template_function", "template_method", "template_type"):
-            self._push([node.child_by_field_name("arguments")])
+            self._push([field_of(node, "arguments")])
 
     # --- expressions ---
 
     def _assignment(self, node: tree_sitter.Node, access: Access) -> None:
-        operator = node.child_by_field_name("operator")
+        operator = field_of(node, "operator")
         is_plain = operator is None or text_of(operator) == "="
-        left, right = child_of(node, "left"), node.child_by_field_name("right")
+        left, right = child_of(node, "left"), field_of(node, "right")
         kind = Access.WRITE if is_plain else Access.UPDATE
         if right is not None and is_turned(node):
             self.idle_operators.append(self.extent(right))
@@ -223,29 +223,29 @@ class TreeReader:
         if outer is None or outer.type == "condition_clause":
             return outer is not None
         if outer.type != "parenthesized_expression":
-            return outer.type == "for_statement" and node == outer.child_by_field_name("condition")
+            return outer.type == "for_statement" and node == field_of(outer, "condition")
         is_in_brackets_of_code = outer.start_byte >= self._prefix
         owner = outer.parent
         if owner is None or not is_in_brackets_of_code:
             return not is_in_brackets_of_code
         is_owned = owner.type in ("conditional_expression", "do_statement")
-        return is_owned and outer == owner.child_by_field_name("condition")
+        return is_owned and outer == field_of(owner, "condition")
 
     def _update(self, node: tree_sitter.Node, access: Access) -> None:
-        self._push([node.child_by_field_name("argument")], Access.UPDATE)
+        self._push([field_of(node, "argument")], Access.UPDATE)
 
     def _pointer(self, node: tree_sitter.Node, access: Access) -> None:
         is_address = node.children[0].type == "&"
         if not is_address:
             self._dereferenced(child_of(node, "argument"))
-        self._push([node.child_by_field_name("argument")], Access.BIND if is_address else access)
+        self._push([field_of(node, "argument")], Access.BIND if is_address else access)
 
     def _pass_on(self, node: tree_sitter.Node, access: Access) -> None:
         self._push(node.children, access)
 
     def _conditional(self, node: tree_sitter.Node, access: Access) -> None:
-        self._push([node.child_by_field_name("condition")])
-        branches = [node.child_by_field_name("consequence"), node.child_by_field_name("alternative")]
+        self._push([field_of(node, "condition")])
+        branches = [field_of(node, "consequence"), field_of(node, "alternative")]
         self._push(branches, access)
         self._push(child for child in node.children if child.is_error)
 
@@ -263,7 +263,7 @@ class TreeReader:
 
     def _called(self, function: tree_sitter.Node, access: Access) -> tuple[str, ...]:
         if function.type == "template_function":
-            self._push([function.child_by_field_name("arguments")])
+            self._push([field_of(function, "arguments")])
             function = child_of(function, "name")
         if function.type != "field_expression":
             parts, root = self._flatten(function)
@@ -271,7 +271,7 @@ class TreeReader:
                 self.mentions.append(Mention(parts, Access.CALL, self.extent(function), self.extent(root)))
             return parts
         target = child_of(function, "argument")
-        method = names_of(function.child_by_field_name("field"))[-1:]
+        method = names_of(field_of(function, "field"))[-1:]
         if asks_for_element(function):
             self._element(target)
         parts, root = self._flatten(target, _method_access("".join(method), access, is_aos=False))
@@ -285,7 +285,7 @@ class TreeReader:
     # --- declarations ---
 
     def _declaration(self, node: tree_sitter.Node, access: Access) -> None:
-        type_node = node.child_by_field_name("type")
+        type_node = field_of(node, "type")
         self._push([type_node])
         prefix = [child for child in node.children if child.type == "type_qualifier"]
         type_text = " ".join(text_of(part) for part in [*prefix, type_node] if part is not None)
@@ -294,18 +294,18 @@ class TreeReader:
         is_constant = any(text_of(part) == "const" for part in prefix)
         for child in node.children_by_field_name("declarator"):
             self._declarator(child, type_text, kind, is_constant)
-        self._push([node.child_by_field_name("default_value"), node.child_by_field_name("value")])
+        self._push([field_of(node, "default_value"), field_of(node, "value")])
         if node.type == "for_range_loop":
-            declarator = node.child_by_field_name("declarator")
+            declarator = field_of(node, "declarator")
             binds = declarator is not None and "reference" in declarator.type and not is_constant
-            self._push([node.child_by_field_name("right")], Access.BIND if binds else Access.READ)
-            self._push([node.child_by_field_name("initializer"), node.child_by_field_name("body")])
+            self._push([field_of(node, "right")], Access.BIND if binds else Access.READ)
+            self._push([field_of(node, "initializer"), field_of(node, "body")])
         self._push(child for child in node.children if child.is_error or child.is_missing)
 
     def _declarator(
         self, node: tree_sitter.Node, type_text: str, kind: DeclarationKind, is_constant: bool
     ) -> None:
-        initial = node.child_by_field_name("value") if node.type == "init_declarator" else None
+        initial = field_of(node, "value") if node.type == "init_declarator" else None
         inner = child_of(node, "declarator") if node.type == "init_declarator" else node
         if inner.type in ("reference_declarator", "pointer_declarator"):
             initial = _within_brackets(initial)
@@ -314,9 +314,9 @@ class TreeReader:
         self._push(child for child in node.children if child.is_error)
         while inner.type in ("reference_declarator", "pointer_declarator", "array_declarator"):
             if inner.type == "array_declarator":
-                self._push([inner.child_by_field_name("size")])
+                self._push([field_of(inner, "size")])
             type_text += {"reference_declarator": "&", "pointer_declarator": "*"}.get(inner.type, "[]")
-            inner = inner.child_by_field_name("declarator") or inner.named_children[-1]
+            inner = field_of(inner, "declarator") or inner.named_children[-1]
         names = inner.named_children if inner.type == "structured_binding_declarator" else [inner]
         for name in names:
             if name.type == "identifier":
@@ -328,25 +328,25 @@ class TreeReader:
                 self._push(name.children)
 
     def _enum(self, node: tree_sitter.Node, access: Access) -> None:
-        name = node.child_by_field_name("name")
+        name = field_of(node, "name")
         enum_name = text_of(name) if name is not None else ""
         if name is not None:
             self._push([name])
             extent = self.extent(name)
             self.declarations.append(Declaration(enum_name, "enum", DeclarationKind.ENUM, extent))
-        body = node.child_by_field_name("body")
+        body = field_of(node, "body")
         for enumerator in body.named_children if body is not None else []:
-            value_name = enumerator.child_by_field_name("name")
+            value_name = field_of(enumerator, "name")
             if enumerator.type == "enumerator" and value_name is not None:
                 extent = self.extent(value_name)
                 declaration = Declaration(text_of(value_name), enum_name, DeclarationKind.ENUMERATOR, extent)
                 self.declarations.append(declaration)
-                self._push([enumerator.child_by_field_name("value")])
+                self._push([field_of(enumerator, "value")])
 
     def _captures(self, node: tree_sitter.Node, access: Access) -> None:
         """Captures with a value, `[n = 1]`, are variables of the lambda. Others are named in its body."""
         for capture in node.named_children:
-            left, right = (capture.child_by_field_name(side) for side in ("left", "right"))
+            left, right = (field_of(capture, side) for side in ("left", "right"))
             if capture.type != "lambda_capture_initializer" or left is None or right is None:
                 continue
             binds = any(child.type == "&" for child in capture.children)
@@ -419,7 +419,7 @@ def _method_access(method: str, outer: Access, *, is_aos: bool) -> Access:
 
 def _is_type(node: tree_sitter.Node | None) -> bool:
     while node is not None and node.type == "qualified_identifier":
-        node = node.child_by_field_name("name")
+        node = field_of(node, "name")
     return node is not None and node.type in ("type_identifier", "template_type")
 
 

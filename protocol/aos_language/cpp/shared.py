@@ -14,7 +14,7 @@ import tree_sitter
 
 from aos_language.cpp.facts import READING_FUNCTIONS
 from aos_language.cpp.keywords import DRAW_SOURCES
-from aos_language.cpp.nodes import below, field_text, text_of
+from aos_language.cpp.nodes import below, field_of, field_text, text_of
 from aos_language.cpp.snippets import Cpp, read_cpp_declarations
 from aos_language.cpp.tokens import Extent, Lines
 from aos_language.cpp.tree import tree_of
@@ -189,7 +189,7 @@ class _Reading:
         elif kind == "enum_specifier":
             self._enum(node)
         elif kind in ("alias_declaration", "type_definition"):
-            name = node.child_by_field_name("name") or node.child_by_field_name("declarator")
+            name = field_of(node, "name") or field_of(node, "declarator")
             self._add(node, name, "type")
             if name is not None and self._other_types.search(text_of(node)):
                 names = rf"{self._other_types.pattern}|\b{re.escape(text_of(name).strip('*&( '))}\b"
@@ -213,7 +213,7 @@ class _Reading:
                 return
             is_pointer = any(part.type == "pointer_declarator" for part in _declarators(declarator))
             is_constant = "constexpr" in qualifiers or ("const" in qualifiers and not is_pointer)
-            value = declarator.child_by_field_name("value")
+            value = field_of(declarator, "value")
             if not is_constant:
                 hint = f"Write `const` before its type, or make a state variable of it: {_HINT.lower()}"
                 self._misuse(name, f"`{text_of(name)}` could change, and steps could not be repeated", hint)
@@ -228,11 +228,11 @@ class _Reading:
             self._add(node, name, "constant")
 
     def _enum(self, node: tree_sitter.Node) -> None:
-        if (name := node.child_by_field_name("name")) is not None:
+        if (name := field_of(node, "name")) is not None:
             self._add(node, name, "enum")
-        body = node.child_by_field_name("body")
+        body = field_of(node, "body")
         for value in body.named_children if body is not None else []:
-            if (name := value.child_by_field_name("name")) is not None:
+            if (name := field_of(value, "name")) is not None:
                 self._add(node, name, "enum value")
 
     def _add(self, node: tree_sitter.Node, name: tree_sitter.Node | None, kind: str) -> None:
@@ -247,13 +247,13 @@ class _Reading:
 
     def _function(self, node: tree_sitter.Node) -> None:
         function = next(part for part in below(node) if part.type == "function_definition")
-        declarators = [*_declarators(function.child_by_field_name("declarator"))]
+        declarators = [*_declarators(field_of(function, "declarator"))]
         header = next(
             (declarator for declarator in declarators if declarator.type == "function_declarator"), None
         )
-        body = function.child_by_field_name("body")
-        name = header.child_by_field_name("declarator") if header is not None else None
-        parameters = header.child_by_field_name("parameters") if header is not None else None
+        body = field_of(function, "body")
+        name = field_of(header, "declarator") if header is not None else None
+        parameters = field_of(header, "parameters") if header is not None else None
         if body is None or name is None or parameters is None or name.type != "identifier":
             self._misuse(node, "this is no function", _HINT)
             return
@@ -324,7 +324,7 @@ def _declared(node: tree_sitter.Node) -> str:
 def _declarators(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
     while node is not None:
         yield node
-        inner = node.child_by_field_name("declarator")
+        inner = field_of(node, "declarator")
         if inner is None and node.type in ("reference_declarator", "parenthesized_declarator"):
             inner = node.named_children[-1] if node.named_children else None
         node = inner
@@ -337,7 +337,7 @@ def _name_node(declarator: tree_sitter.Node) -> tree_sitter.Node | None:
 
 def _parameter_name(parameter: tree_sitter.Node) -> str:
     """Returns the name of a parameter; empty for one without a name."""
-    names = [text_of(part) for part in _declarators(parameter.child_by_field_name("declarator"))]
+    names = [text_of(part) for part in _declarators(field_of(parameter, "declarator"))]
     return names[-1] if names and names[-1].isidentifier() else ""
 
 

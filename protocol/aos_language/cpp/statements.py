@@ -8,6 +8,7 @@ from collections.abc import Callable
 import msgspec
 import tree_sitter
 
+from aos_language.cpp.nodes import field_of
 from aos_language.cpp.tree import tree_of
 
 
@@ -99,7 +100,7 @@ class _Marking:
     def _mark_condition(self, loop: tree_sitter.Node) -> None:
         """A condition that is there and declares nothing; a `for` without one tests the mark."""
         mark = self._marks.before(self._statement(loop))
-        condition = loop.child_by_field_name("condition")
+        condition = field_of(loop, "condition")
         if condition is None:
             if loop.type == "for_statement":
                 last = [child for child in loop.children if child.type == ";"][-1]
@@ -135,7 +136,7 @@ def _is_branch(node: tree_sitter.Node) -> bool:
     if parent.type == "else_clause":
         return True
     field = "consequence" if parent.type == "if_statement" else "body" if parent.type in _LOOPS else ""
-    return bool(field) and node == parent.child_by_field_name(field)
+    return bool(field) and node == field_of(parent, field)
 
 
 def _is_in_a_list(node: tree_sitter.Node) -> bool:
@@ -144,5 +145,5 @@ def _is_in_a_list(node: tree_sitter.Node) -> bool:
     if not node.is_named or node.type in _NO_STATEMENTS:
         return False
     if parent.type == "case_statement":
-        return node != parent.child_by_field_name("value")
+        return node != field_of(parent, "value")
     return parent.type == "compound_statement"

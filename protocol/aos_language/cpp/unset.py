@@ -12,7 +12,7 @@ import tree_sitter
 from aos_language.cpp.evaluation import Evaluation
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import names_in
-from aos_language.cpp.nodes import below, field_text, operator_of, text_of
+from aos_language.cpp.nodes import below, field_of, field_text, operator_of, text_of
 from aos_language.cpp.reader import TreeReader
 from aos_language.cpp.tokens import Extent, Tokens
 from aos_language.cpp.tree import tree_of
@@ -94,15 +94,15 @@ class _Walk(Evaluation):
         return state
 
     def _declaration(self, node: tree_sitter.Node, state: State) -> State:
-        kind = node.child_by_field_name("type")
+        kind = field_of(node, "type")
         words = {text_of(child) for child in node.children if child.type == "storage_class_specifier"}
         is_number = kind is not None and (kind.type in _NUMBERS or text_of(kind) in self._enums)
-        of_condition = node.child_by_field_name("value")  # `if (int n = count())`
+        of_condition = field_of(node, "value")  # `if (int n = count())`
         self.expression(of_condition, state)
         for declarator in node.children_by_field_name("declarator"):
             if declarator.type == "init_declarator":
-                inner = declarator.child_by_field_name("declarator")
-                value = declarator.child_by_field_name("value")
+                inner = field_of(declarator, "declarator")
+                value = field_of(declarator, "value")
                 if inner is not None and inner.type in _HANDLES:
                     self.may_be_set(value, state)
                 self.expression(value, state)
@@ -118,10 +118,10 @@ class _Walk(Evaluation):
         return state
 
     def _if(self, node: tree_sitter.Node, state: State) -> State:
-        condition = node.child_by_field_name("condition")
+        condition = field_of(node, "condition")
         named = self.condition(condition, state)
-        then = self._under(named, node.child_by_field_name("consequence"), state.copy())
-        alternative = node.child_by_field_name("alternative")
+        then = self._under(named, field_of(node, "consequence"), state.copy())
+        alternative = field_of(node, "alternative")
         if alternative is None and _is_last_case(node):
             return then  # `if (x == A) .. else if (x == B) ..` may well be all there is.
         otherwise = self._under(named, alternative, state.copy())
@@ -134,28 +134,28 @@ class _Walk(Evaluation):
         return state
 
     def _while(self, node: tree_sitter.Node, state: State) -> State:
-        condition = node.child_by_field_name("condition")
+        condition = field_of(node, "condition")
         named = self.condition(condition, state)
-        after, breaks = self._body(named, node.child_by_field_name("body"), state)
+        after, breaks = self._body(named, field_of(node, "body"), state)
         # Most loops run: what each turn sets counts as set.
         return merged(breaks if _is_true(condition) else [after, *breaks], named)
 
     def _do(self, node: tree_sitter.Node, state: State) -> State:
-        state, breaks = self._body(frozenset(), node.child_by_field_name("body"), state)
+        state, breaks = self._body(frozenset(), field_of(node, "body"), state)
         if not state.ended:
-            self.condition(node.child_by_field_name("condition"), state)
-        if _is_true(node.child_by_field_name("condition")):
+            self.condition(field_of(node, "condition"), state)
+        if _is_true(field_of(node, "condition")):
             return merged(breaks)
         return merged([state, *breaks])
 
     def _for(self, node: tree_sitter.Node, state: State) -> State:
         outer, hidden = set(state.unset), dict(self.declared)
-        state = self.statement(node.child_by_field_name("initializer"), state)
-        condition = node.child_by_field_name("condition")
+        state = self.statement(field_of(node, "initializer"), state)
+        condition = field_of(node, "condition")
         named = self.condition(condition, state)
-        after, breaks = self._body(named, node.child_by_field_name("body"), state)
+        after, breaks = self._body(named, field_of(node, "body"), state)
         if not after.ended:
-            self.expression(node.child_by_field_name("update"), after)
+            self.expression(field_of(node, "update"), after)
         is_endless = condition is None or _is_true(condition)
         state = merged(breaks if is_endless else [after, *breaks], named)
         self.declared = hidden
@@ -163,12 +163,12 @@ class _Walk(Evaluation):
         return state
 
     def _for_range(self, node: tree_sitter.Node, state: State) -> State:
-        whole = node.child_by_field_name("right")
+        whole = field_of(node, "right")
         named = self.condition(whole, state)
         hidden = dict(self.declared)
         inner = state.copy()
-        self.may_be_set(node.child_by_field_name("declarator"), inner)
-        after, breaks = self._body(named, node.child_by_field_name("body"), inner)
+        self.may_be_set(field_of(node, "declarator"), inner)
+        after, breaks = self._body(named, field_of(node, "body"), inner)
         self.declared = hidden
         return merged([after, *breaks], named)
 
@@ -195,8 +195,8 @@ class _Walk(Evaluation):
         return merged([state, *loop.turns], named), loop.breaks
 
     def _switch(self, node: tree_sitter.Node, state: State) -> State:
-        named = self.condition(node.child_by_field_name("condition"), state)
-        body = node.child_by_field_name("body")
+        named = self.condition(field_of(node, "condition"), state)
+        body = field_of(node, "body")
         self._loops.append(_Loop(is_switch=True))
         self.conditions.append(named)
         current = State(ended=True)
@@ -206,7 +206,7 @@ class _Walk(Evaluation):
                 continue
             # A case is reached from the head, and from the one above that does not break.
             current = merged([state.copy(), current])
-            value = case.child_by_field_name("value")
+            value = field_of(case, "value")
             for child in case.named_children:
                 if value is None or child != value:
                     current = self.statement(child, current)
@@ -287,7 +287,7 @@ def _is_last_case(node: tree_sitter.Node) -> bool:
 
 def _asked(node: tree_sitter.Node) -> str:
     """Returns the `x` of `if (x == A)`; empty for another condition."""
-    condition = node.child_by_field_name("condition")
+    condition = field_of(node, "condition")
     while condition is not None and condition.type in ("condition_clause", "parenthesized_expression"):
         condition = condition.named_children[0] if condition.named_child_count == 1 else None
     if condition is None or condition.type != "binary_expression" or operator_of(condition) != "==":

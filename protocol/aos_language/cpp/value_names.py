@@ -6,7 +6,7 @@ import tree_sitter
 
 from aos_language.cpp.facts import Cpp, DeclarationKind
 from aos_language.cpp.keywords import STATES
-from aos_language.cpp.nodes import below, text_of
+from aos_language.cpp.nodes import below, field_of, text_of
 from aos_language.cpp.tokens import Extent, Lines
 from aos_language.cpp.tree import tree_of
 
@@ -40,25 +40,25 @@ def _is_value(node: tree_sitter.Node, variables: set[str]) -> bool:
     inner, outer = node, node.parent
     while outer is not None and (
         outer.type in _WRAPPING
-        or (outer.type == "conditional_expression" and inner != outer.child_by_field_name("condition"))
+        or (outer.type == "conditional_expression" and inner != field_of(outer, "condition"))
     ):
         inner, outer = outer, outer.parent
     if outer is None:
         return False
-    left, right = outer.child_by_field_name("left"), outer.child_by_field_name("right")
+    left, right = field_of(outer, "left"), field_of(outer, "right")
     if outer.type == "binary_expression":
-        operator = outer.child_by_field_name("operator")
+        operator = field_of(outer, "operator")
         is_compared = operator is not None and text_of(operator) in _COMPARING
         return is_compared and _is_of_state(left if inner == right else right, variables)
     if outer.type == "assignment_expression":
         return inner == right and _is_of_state(left, variables)
     if outer.type in ("init_declarator", "for_range_loop"):
         declared = (outer.parent or outer) if outer.type == "init_declarator" else outer
-        kind = declared.child_by_field_name("type")
+        kind = field_of(declared, "type")
         return kind is not None and _NUMBERS.search(text_of(kind)) is None
     if outer.type == "case_statement":
         switch = outer.parent.parent if outer.parent is not None else None
-        return switch is not None and _is_of_state(switch.child_by_field_name("condition"), variables)
+        return switch is not None and _is_of_state(field_of(switch, "condition"), variables)
     if outer.type == "argument_list":
         return any(_mentions_state(argument) for argument in outer.named_children if argument != inner)
     return outer.type == "subscript_argument_list"

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import tree_sitter
 
-from aos_language.cpp.nodes import operator_of
+from aos_language.cpp.nodes import field_of, operator_of
 from aos_language.cpp.tree import tree_of
 
 _VALUES = {
@@ -46,7 +46,7 @@ def _values(root: tree_sitter.Node) -> Iterator[tree_sitter.Node]:
     while waiting:
         node = waiting.pop()
         if node.type == "init_declarator":
-            value = node.child_by_field_name("value")
+            value = field_of(node, "value")
             waiting += [value] if value is not None else []
         elif node.type in ("translation_unit", "declaration", "initializer_list"):
             waiting += reversed(node.named_children)
