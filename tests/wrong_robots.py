@@ -99,11 +99,8 @@ async def tried_by_model(wrong: Wrong) -> Verdict:
     player = await ModelPlayer.prepared(_missions(wrong.name, robot.plans))
     if robot.plans:
         return wrong.verdict([await player.play(seed) for seed in robot.missions], "model")
-    engine = await Engine.start(player.model, seed=1, keeps_belief=False)
-    try:
+    async with await Engine.start(player.model, seed=1, keeps_belief=False) as engine:
         trials = [await _scripted(engine, robot, seed) for seed in robot.missions]
-    finally:
-        await engine.close()
     return wrong.verdict(trials, "model")
 
 

@@ -69,8 +69,7 @@ async def _mission(
     loaded = load_files({name: text.encode() for name, text in files.items()})
     assert loaded.project is not None, loaded.diagnostics
     built = await build_project(loaded.project, cache_dir)
-    engine = await Engine.start(built, seed=1)
-    try:
+    async with await Engine.start(built, seed=1) as engine:
         await robot.start(engine)
         terms = Terms(
             name="exam",
@@ -79,8 +78,6 @@ async def _mission(
             activation_timeout_s=1.0,
         )
         return await Mission(terms, RunningModel(1, engine), robot).run()
-    finally:
-        await engine.close()
 
 
 class _Robot(QuietPorts):

@@ -62,11 +62,8 @@ async def costs_of(built: BuiltModel, simulations: int, decisions: int, seed: in
     script: list[tuple[str, str, dict[str, Any]]] = []
     costs = []
     for planner in PLANNERS:
-        engine = await Engine.start(built, seed=seed, keeps_belief=False)
-        try:
+        async with await Engine.start(built, seed=seed, keeps_belief=False) as engine:
             costs.append(await _cost(engine, planner, simulations, decisions, seed, script))
-        finally:
-            await engine.close()
     return costs
 
 

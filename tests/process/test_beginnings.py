@@ -125,18 +125,15 @@ async def test_what_is_impossible_begins_nothing():
 
 
 async def test_a_condition_of_probability_0_leaves_the_belief_also_to_the_next_process():
-    aside = await Engine.start(
+    async with await Engine.start(
         await built_with_conditions(project(), ("state.place == 7",), cache_dir()), seed=1
-    )
-    try:
+    ) as aside:
         before = (await aside.update("look", "low")).summary
         for _ in range(2):
             answer = await aside.condition(0.01)
             assert (answer.probability, answer.summary) == (0.0, before)
             await kill_engine(aside.pid)
             assert await aside.summary() == before
-    finally:
-        await aside.close()
 
 
 @pytest.mark.parametrize(

@@ -27,8 +27,7 @@ async def commands_of(executable: list[Path]) -> list[str]:
     built = await built_text(LAMP)
     executable.append(built.executable)
     Recorded.asked = []
-    engine = await Recorded.start(built, seed=1)
-    try:
+    async with await Recorded.start(built, seed=1) as engine:
         await engine.summary()
         await engine.plan(seed=1, simulations=10, within=Restriction(barred=()), planner="pomcp")
         await engine.ponder(0, seed=1, time_s=0.0)
@@ -51,8 +50,6 @@ async def commands_of(executable: list[Path]) -> list[str]:
         await engine.step_worlds(bytes(8))
         await engine.rate(0.01, 1)
         await engine.rate(0.01, 1, "table")
-    finally:
-        await engine.close()
     return [*Recorded.asked, command_line("restore_belief", change=1)]
 
 

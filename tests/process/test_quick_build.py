@@ -63,21 +63,15 @@ def untimed(plan: Plan) -> Plan:
 async def decided(built: BuiltModel) -> list[Plan | BeliefUpdate]:
     """Returns what an engine says that depends on neither time nor machine: plans, and a belief between
     them."""
-    engine = await Engine.start(built, seed=7)
-    try:
+    async with await Engine.start(built, seed=7) as engine:
         before = await engine.plan(simulations=5000, seed=3, planner="pomcp")
         update = await engine.update(before.actions[before.index].action, "DefaultObservation")
         after = await engine.plan(simulations=5000, seed=4, planner="pomcp")
-    finally:
-        await engine.close()
     return [untimed(before), update, untimed(after)]
 
 
 async def mean_reward(built: BuiltModel) -> float:
     """Returns the mean of random steps: a quick build takes them one by one, a thorough one many at a
     time."""
-    engine = await Engine.start(built, seed=7)
-    try:
+    async with await Engine.start(built, seed=7) as engine:
         return (await engine.rate(0.05, seed=5)).mean_reward
-    finally:
-        await engine.close()

@@ -15,15 +15,12 @@ from aos_solver.study.comparing import Comparison, compared
 
 
 async def comparisons(played: Played) -> list[Comparison]:
-    replay = played.replay(decides=True)
-    try:
+    async with played.replay(decides=True) as replay:
         return [
             row
             async for remade in replay.rows()
             if (row := compared(remade, replay.engine.build_digest, played.settings.time_s)) is not None
         ]
-    finally:
-        await replay.close()
 
 
 def files_of(bundle: Path) -> dict[str, bytes]:
@@ -120,24 +117,18 @@ async def test_the_journal_has_whole_beliefs_that_an_engine_takes():
     played = await play(files_of(BUNDLES / "armadillo-finer"), steps=2)
     rows = list(played.mission.of_kind(BeliefRow))
     assert [row.step for row in rows] == [0, 1, 2]
-    replay = played.replay()
-    try:
+    async with played.replay() as replay:
         await replay.go_to(2)
         believed = await replay.engine.export_beliefs()
-    finally:
-        await replay.close()
     assert believed.words == rows[1].words
     assert [b.particles for b in believed.beliefs] == [b.particles for b in rows[1].beliefs]
 
 
 async def test_a_prediction_changes_no_particle():
     played = await play(files_of(BUNDLES / "bench" / "laser-normal"), steps=2, simulations=100)
-    replay = played.replay()
-    try:
+    async with played.replay() as replay:
         await replay.go_to(2)
         before = await replay.engine.export_belief()
         for index in range(3):
             await replay.engine.predict(index)
         assert await replay.engine.export_belief() == before
-    finally:
-        await replay.close()

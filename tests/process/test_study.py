@@ -26,8 +26,7 @@ async def played() -> Played:
 
 
 async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Played):
-    study = Study(played, cache_dir(), flips_s=math.inf)
-    try:
+    async with Study(played, cache_dir(), flips_s=math.inf) as study:
         why = await study.why(WhyQuery(2, instead="navigate(destination=easy_table)"))
         again = await study.why(WhyQuery(2, instead="navigate(destination=easy_table)"))
         assert again == why  # A question leaves the engine where it was.
@@ -53,13 +52,10 @@ async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Play
                 found = await study.what_if(query)
                 worth = {value.action: value.q for value in found.actions}
                 assert (worth[why.other] > worth[why.action]) == is_better
-    finally:
-        await study.close()
 
 
 async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them(played: Played):
-    study = Study(played, cache_dir())
-    try:
+    async with Study(played, cache_dir()) as study:
         chosen = played.mission.decision(1).action
         forbidden = await study.what_if(WhatIfQuery(1, forbid=(chosen,)))
         assert forbidden.action != chosen == forbidden.before
@@ -76,13 +72,10 @@ async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them
             index = [action.name for action in engine.description.actions].index(chosen)
             predicted = {each.response: each.probability for each in (await engine.predict(index)).predicted}
         assert {response: p for response, p, _ in tree.root.actions[0].after} == predicted
-    finally:
-        await study.close()
 
 
 async def test_what_cannot_be_supposed_is_told(played: Played):
-    study = Study(played, cache_dir())
-    try:
+    async with Study(played, cache_dir()) as study:
         for query, code, said in (
             (WhatIfQuery(1), "AOS530", "nothing is supposed"),
             (WhatIfQuery(9, forbid=("pick",)), "AOS501", "no decision of step 9"),
@@ -96,8 +89,6 @@ async def test_what_cannot_be_supposed_is_told(played: Played):
             assert caught.value.code == code
             assert caught.value.hint
             assert (await study.what_if(WhatIfQuery(1, forbid=("pick",)))).action != "pick"
-    finally:
-        await study.close()
 
 
 async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study():
@@ -116,8 +107,7 @@ async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(
     rows = [row for row in played.rows if row.kind == "begun"]
     text = msgspec.json.encode(asked).decode()
     played.rows = [*rows, JournalRow(len(rows) + 1, 0, "decision", text)]
-    study = Study(played, cache_dir(), flips_s=0.0)
-    try:
+    async with Study(played, cache_dir(), flips_s=0.0) as study:
         why = await study.why(WhyQuery(1))
         assert (why.action, why.chosen_by, why.other) == ("observe_holding", "operator", chosen.action)
         assert why.is_exact
@@ -125,8 +115,6 @@ async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(
         other = await study.what_if(WhatIfQuery(1, forbid=("observe_holding",)))
         assert (other.action, other.before) == (chosen.action, "observe_holding")
         assert other.value_before == pytest.approx(why.value)
-    finally:
-        await study.close()
 
 
 async def test_a_decision_whose_activation_brought_nothing_says_so(played: Played):
@@ -143,11 +131,8 @@ async def test_a_decision_whose_activation_brought_nothing_says_so(played: Playe
         if row.kind == "decision" and '"outcome":{' in row.payload
     )
     played.rows[place] = played.rows[place]._replace(payload=text)
-    study = Study(played, cache_dir(), flips_s=0.0)
-    try:
+    async with Study(played, cache_dir(), flips_s=0.0) as study:
         why = await study.why(WhyQuery(1))
-    finally:
-        await study.close()
     assert not any(each.is_seen for each in why.expected)
     assert "nothing was observed, its activation ended as unknown: the adapter was lost" in why.remark
 
@@ -170,8 +155,7 @@ async def test_an_action_of_a_script_is_explained_where_values_are_searched():
     rows = [row for row in played.rows if row.kind == "begun"]
     text = msgspec.json.encode(asked).decode()
     played.rows = [*rows, JournalRow(len(rows) + 1, 0, "decision", text)]
-    study = Study(played, cache_dir())
-    try:
+    async with Study(played, cache_dir()) as study:
         why = await study.why(WhyQuery(1))
         assert (why.action, why.chosen_by, why.other, why.planner) == (opened, "script", "listen", "pomcp")
         assert why.margin < 0
@@ -179,8 +163,6 @@ async def test_an_action_of_a_script_is_explained_where_values_are_searched():
         found = await study.what_if(WhatIfQuery(1, forbid=("listen",)))
         assert found.before == opened
         assert "listen" not in {value.action for value in found.actions}
-    finally:
-        await study.close()
 
 
 async def test_rewards_of_more_outcomes_than_can_be_listed_are_means_of_drawn_steps():
@@ -188,12 +170,9 @@ async def test_rewards_of_more_outcomes_than_can_be_listed_are_means_of_drawn_st
     tolls = "for (int i = 0; i < 16; i++) __reward -= AOS.Bernoulli(0.25) ? 1 : 0;"
     files["listen.sd"] = files["listen.sd"].replace(b"__reward = -1;", f"__reward = -1;\n{tolls}".encode())
     played = await play(files, steps=1, planner="pomcp", simulations=500)
-    study = Study(played, cache_dir())
-    try:
+    async with Study(played, cache_dir()) as study:
         why = await study.why(WhyQuery(1))
         assert "rewards of lines are means of 10,000 steps that were drawn" in why.remark
         of_listening = [term.value if why.action == "listen" else term.other for term in why.terms]
         assert any(amount == pytest.approx(-4, abs=0.1) for amount in of_listening), why.terms
         assert sum(term.value for term in why.terms) + why.rest == pytest.approx(why.value)
-    finally:
-        await study.close()

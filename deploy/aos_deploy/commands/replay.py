@@ -72,8 +72,7 @@ async def replayed_run(
 ) -> Replayed:
     """Compares a mission with its replay up to the first difference, or to the decision of step `until`."""
     found = Replayed(str(name))
-    remade = studied.replay(told, decides=True)
-    try:
+    async with studied.replay(told, decides=True) as remade:
         async for made in remade.rows(until):
             found.takeovers += isinstance(made.said, ModelAdopted)
             row = compared(made, remade.engine.build_digest, studied.settings.time_s)
@@ -87,8 +86,6 @@ async def replayed_run(
             if row.difference:
                 found.first_difference = row
                 break
-    finally:
-        await remade.close()
     return found
 
 

@@ -47,15 +47,12 @@ async def _replay(run: Path, file: str, replay: Replay, on_progress: Callable[[s
     if not any(record.belief.digest for record in studied.mission.of_kind(DecisionRecord)):
         replay.remark = "no belief of the journal has a digest"
         return
-    remade = studied.replay(on_progress)
-    try:
+    async with studied.replay(on_progress) as remade:
         async for row, record, belief, _ in remade.rows():
             if isinstance(record, DecisionRecord) and record.belief.digest and belief.digest:
                 replay.compared += 1
                 if record.belief.digest != belief.digest:
                     replay.violations.append(Violation("replay", file, row, _text(record, belief)))
-    finally:
-        await remade.close()
 
 
 def _text(record: DecisionRecord, belief: BeliefSummary) -> str:

@@ -69,11 +69,8 @@ class StudiedRun:
 
     async def study(self, ask: Callable[[Study], Awaitable[T]]) -> T:
         """The answer to one question about the mission."""
-        study = Study(_Read(self), cache_dir())
-        try:
+        async with Study(_Read(self), cache_dir()) as study:
             return await ask(study)
-        finally:
-            await study.close()
 
     def replay(self, on_progress: Callable[[str], None], *, decides: bool = False) -> ReplayedMission:
         """A replay of the mission, which has begun; StudyError AOS530 if it has not.

@@ -15,6 +15,7 @@ from aos_protocol import messages
 from aos_protocol.documents import Project
 from aos_protocol.errors import StudyError
 from aos_runtime.clock import SystemClock
+from aos_runtime.closing import Closing
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.beliefs import ExportedBeliefs
 from aos_solver.child.answers.models import Plan
@@ -56,7 +57,7 @@ class Remade(NamedTuple):
     plans: tuple[Plan | None, ...] = ()
 
 
-class ReplayedMission:
+class ReplayedMission(Closing):
     """A mission's past in an engine of its own, at the row that was reached last.
 
     `engine` is the one that believes what the mission's engine believed there.

@@ -12,6 +12,7 @@ from typing import Protocol
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import DecisionRecord, DecisionTree, TreeQuery, WhatIf, WhatIfQuery, Why, WhyQuery
+from aos_runtime.closing import Closing
 from aos_solver.study.looking_ahead import tree_below
 from aos_solver.study.other_circumstances import OtherDocuments, decided_otherwise
 from aos_solver.study.reasons import Reasons
@@ -37,7 +38,7 @@ class Source(Protocol):
     async def files(self, revision: int) -> dict[str, bytes]: ...
 
 
-class Study:
+class Study(Closing):
     """Answers one question after the other. Its engines are started when they are needed.
 
     With a `niceness` engines and compilers give way to whatever else runs. Other beliefs of an exact decision
