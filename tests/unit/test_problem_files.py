@@ -1,4 +1,4 @@
-from collections.abc import Callable
+from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -8,6 +8,7 @@ from places import PROBLEMS, ROOT
 from aos_lab.formats.problem_files import read_problem
 from aos_lab.formats.problem_writers import write_problem
 from aos_lab.formats.sensing_by_state import with_sensing_by_state
+from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import DocumentError, ModelError, PlanningError
 from aos_solver.offline.explicit_model import ExplicitModel, Floats, Ragged
 
@@ -81,7 +82,7 @@ def test_a_persistent_variable_keeps_its_own_value(tmp_path):
         f"{diagram}</CondProb></StateTransitionFunction>",
     }
     for old, new in parts.items():
-        text = replaced(old, new)(text)
+        text = replaced(text, old, new)
     (tmp_path / "twin.pomdpx").write_text(text)
     model, plain = read_problem(tmp_path / "twin.pomdpx"), read_problem(PROBLEMS / "rover.pomdpx")
     twins = [state.rsplit(",", 1) for state in model.states]
@@ -142,60 +143,54 @@ def test_an_observation_of_the_step_itself_splits_the_state_that_follows():
     np.testing.assert_allclose(split.model.rewards[:, 0], [1, 1, 2])
 
 
-def replaced(old: str, new: str) -> Callable[[str], str]:
-    def change(text: str) -> str:
-        assert old in text
-        return text.replace(old, new, 1)
+def replaced(text: str, before: str, after: str) -> str:
+    assert before in text
+    return text.replace(before, after, 1)
 
-    return change
+
+def mistakes(folder: Path, before: str, after: str) -> tuple[Diagnostic, ...]:
+    """The mistakes of the file that has a text, once another one stands in its place."""
+    (path,) = [PROBLEMS / n for n in ("tiger.pomdp", "rover.pomdpx") if before in (PROBLEMS / n).read_text()]
+    (folder / path.name).write_text(replaced(path.read_text(), before, after))
+    with pytest.raises(DocumentError) as caught:
+        read_problem(folder / path.name)
+    return caught.value.diagnostics
 
 
 @pytest.mark.parametrize(
-    ("name", "change", "finding"),
+    ("before", "after", "told"),
     [
-        (
-            "tiger.pomdp",
-            replaced("R: 1 : left", "R: 1 : lft"),
-            "21:8 AOS110 there is no state lft. Did you mean `left`?",
-        ),
-        (
-            "tiger.pomdp",
-            replaced("uniform", "unifrom"),
-            "7:8 AOS110 there is no state unifrom. Did you mean `u",
-        ),
-        ("tiger.pomdp", replaced("0.85 0.15", "0.85 0.3"), "15:1 AOS122 the probabilities of `O:"),
-        ("tiger.pomdp", replaced("0.85 0.15", "0.85 1.5"), "16:6 AOS122 1.5 is no probability"),
-        ("tiger.pomdp", replaced("0.15 0.85", "0.15"), "15:1 AOS106 3 numbers where 2 rows of 2 are needed"),
-        ("tiger.pomdp", replaced("0.5\n", "half\n"), "9:14 AOS106 half is not a finite number"),
-        ("tiger.pomdp", replaced("discount: 0.95", "discount: 2"), "2:11 AOS106 the discount needs to be"),
-        ("tiger.pomdp", replaced("discount: 0.95\n", ""), "1:0 AOS105 there is no `discount:`"),
-        ("tiger.pomdp", replaced("left right", "left left"), "4:14 AOS103 left is there twice"),
-        ("tiger.pomdp", replaced("# A tiger", "A tiger"), "1:1 AOS102 A is no keyword"),
-        ("tiger.pomdp", replaced("values: reward", "vaules: reward"), "3:1 AOS102 vaules is no keyword"),
-        ("tiger.pomdp", replaced("start:", "start"), "7:1 AOS102 start begins a line without a colon"),
-        ("tiger.pomdp", replaced("left right", "9" * 5000), "4:9 AOS106 1000000000000000000 is no number of"),
-        ("tiger.pomdp", replaced("R: 1 : left", f"R: 1 : {'9' * 5000}"), "21:8 AOS110 there is no state 99"),
-        ("rover.pomdpx", replaced("<NumValues>2", f"<NumValues>{'9' * 5000}"), "11:1 AOS105 StateVar has no"),
-        ("tiger.pomdp", replaced("T: * : *", "T: * : * : * "), "9:1 AOS106 `T:` has 4 fields"),
-        ("rover.pomdpx", replaced("look rock - -", "look rok - -"), "66:23 AOS110 there is no value of"),
-        ("rover.pomdpx", replaced("0.9 0.1 0.2 0.8", "0.9 0.1 0.2"), "66:42 AOS106 3 numbers where"),
-        ("rover.pomdpx", replaced("<Parent>do place_0</Parent>", "<Parent>do plac</Parent>"), "32:30 AOS110"),
-        ("rover.pomdpx", replaced("</Discount>", "</Discont>"), "5:16 AOS104 this is not well-formed XML"),
-        ("rover.pomdpx", replaced("fullyObs", "fullyObs='a' fullyObs"), "7:64 AOS104"),
-        ("rover.pomdpx", replaced("<Discount>0.9</Discount>", ""), "3:1 AOS105 there is no Discount"),
-        ("rover.pomdpx", replaced('type="DD"', 'type="XY"'), "33:1 AOS106 XY is no type of Parameter"),
-        ("rover.pomdpx", replaced('idref="slip"', 'idref="slid"'), "39:18 AOS110 there is no SubDAGTemplate"),
-        ("rover.pomdpx", replaced("<Instance>- -<", "<Instance>- - -<"), "58:30 AOS106 the Instance has 3"),
+        ("R: 1 : left", "R: 1 : lft", "21:8 AOS110 there is no state lft. Did you mean `left`?"),
+        ("start: uniform", "start: unifrom", "7:8 AOS110 there is no state unifrom. Did you mean `u"),
+        ("0.85 0.15", "0.85 0.3", "15:1 AOS122 the probabilities of `O:"),
+        ("0.85 0.15", "0.85 1.5", "16:6 AOS122 1.5 is no probability"),
+        ("0.15 0.85", "0.15", "15:1 AOS106 3 numbers where 2 rows of 2 are needed"),
+        ("0.5\n", "half\n", "9:14 AOS106 half is not a finite number"),
+        ("discount: 0.95", "discount: 2", "2:11 AOS106 the discount needs to be"),
+        ("discount: 0.95\n", "", "1:0 AOS105 there is no `discount:`"),
+        ("left right", "left left", "4:14 AOS103 left is there twice"),
+        ("# A tiger", "A tiger", "1:1 AOS102 A is no keyword"),
+        ("values: reward", "vaules: reward", "3:1 AOS102 vaules is no keyword"),
+        ("start:", "start", "7:1 AOS102 start begins a line without a colon"),
+        ("left right", "9" * 5000, "4:9 AOS106 1000000000000000000 is no number of"),
+        ("R: 1 : left", f"R: 1 : {'9' * 5000}", "21:8 AOS110 there is no state 99"),
+        ("<NumValues>2", f"<NumValues>{'9' * 5000}", "11:1 AOS105 StateVar has no"),
+        ("T: * : *", "T: * : * : * ", "9:1 AOS106 `T:` has 4 fields"),
+        ("look rock - -", "look rok - -", "66:23 AOS110 there is no value of"),
+        ("0.9 0.1 0.2 0.8", "0.9 0.1 0.2", "66:42 AOS106 3 numbers where"),
+        ("<Parent>do place_0</Parent>", "<Parent>do plac</Parent>", "32:30 AOS110"),
+        ("</Discount>", "</Discont>", "5:16 AOS104 this is not well-formed XML"),
+        ("fullyObs", "fullyObs='a' fullyObs", "7:64 AOS104"),
+        ("<Discount>0.9</Discount>", "", "3:1 AOS105 there is no Discount"),
+        ('type="DD"', 'type="XY"', "33:1 AOS106 XY is no type of Parameter"),
+        ('idref="slip"', 'idref="slid"', "39:18 AOS110 there is no SubDAGTemplate"),
+        ("<Instance>- -<", "<Instance>- - -<", "58:30 AOS106 the Instance has 3"),
     ],
 )
-def test_a_mistake_is_told_at_its_place(tmp_path, name, change, finding):
-    broken = tmp_path / name
-    broken.write_text(change((PROBLEMS / name).read_text()))
-    with pytest.raises(DocumentError) as caught:
-        read_problem(broken)
-    first = caught.value.diagnostics[0]
+def test_a_mistake_is_told_at_its_place(tmp_path, before, after, told):
+    first = mistakes(tmp_path, before, after)[0]
     text = f"{first.span.line}:{first.span.column} {first.code} {first.message}. {first.hint}"
-    assert text.startswith(finding), text
+    assert text.startswith(told), text
 
 
 @pytest.mark.parametrize(
@@ -222,13 +217,7 @@ def test_a_mistake_is_told_at_its_place(tmp_path, name, change, finding):
     ],
 )
 def test_one_mistake_of_a_whole_statement_is_told_once(tmp_path, before, after, told):
-    texts = [(PROBLEMS / name).read_text() for name in ("tiger.pomdp", "rover.pomdpx")]
-    (text,) = [text for text in texts if before in text]
-    file = tmp_path / f"a.pomdp{'x' * ('<' in text)}"
-    file.write_text(replaced(before, after)(text))
-    with pytest.raises(DocumentError) as caught:
-        read_problem(file)
-    (only,) = caught.value.diagnostics
+    (only,) = mistakes(tmp_path, before, after)
     assert f"{only.span.line}:{only.span.column} {only.message}. {only.hint}" == told
 
 
