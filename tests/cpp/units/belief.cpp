@@ -10,7 +10,8 @@ namespace belief_tests {
 
 using units::Problem;
 using units::TableModel;
-using Belief = aos::Belief<TableModel>;
+using units::Belief;
+using units::initial_belief;
 
 double weight_of(const Belief& belief, std::uint32_t state) {
   double weight = 0;
@@ -22,9 +23,8 @@ double weight_of(const Belief& belief, std::uint32_t state) {
 
 TEST("The posterior is Bayes' rule, and comes with the probability of what was observed") {
   const Problem tiger = units::tiger();
-  TableModel::take(tiger);
+  const Belief initial = initial_belief(tiger);
   aos::Sampler random{1};
-  const Belief initial = Belief::initial(random);
   const auto [once, first] = exam::posterior_of(initial, 0, 0, random);
   EXPECT_NEAR(first, 0.5, 1e-12);
   EXPECT_NEAR(weight_of(once, 0), 0.85, 1e-12);
@@ -36,9 +36,8 @@ TEST("The posterior is Bayes' rule, and comes with the probability of what was o
 
 TEST("What cannot be observed leaves an empty belief, and has probability 0") {
   const Problem tiger = units::tiger();
-  TableModel::take(tiger);
   aos::Sampler random{1};
-  const auto [posterior, probability] = exam::posterior_of(Belief::initial(random), 0, 5, random);
+  const auto [posterior, probability] = exam::posterior_of(initial_belief(tiger), 0, 5, random);
   EXPECT(posterior.particles().empty());
   EXPECT_EQUAL(probability, 0.0);
 }
@@ -48,9 +47,8 @@ TEST("States that come to be equal are one particle with both weights") {
   problem.starts = {{0, 0.25}, {1, 0.75}};
   units::row(problem, 0, 0) = {{0.5, 2, 0, 0}, {0.5, 1, 0, 0}};
   units::row(problem, 1, 0) = {{1.0, 2, 0, 0}};
-  TableModel::take(problem);
   aos::Sampler random{1};
-  const Belief next = Belief::initial(random).predicted(0, random);
+  const Belief next = initial_belief(problem).predicted(0, random);
   EXPECT_EQUAL(next.particles().size(), 2u);
   EXPECT_NEAR(weight_of(next, 2), 0.875, 1e-12);
   EXPECT_NEAR(weight_of(next, 1), 0.125, 1e-12);
@@ -61,9 +59,8 @@ TEST("Observations come with their probabilities, the likeliest first") {
   problem.starts = {{0, 0.25}, {1, 0.75}};
   problem.sensings = {{{3, 0.5}, {4, 0.5}}, {{4, 0.9}, {-1, 0.1}}};
   units::row(problem, 1, 0) = {{1.0, 1, 1, 0}};
-  TableModel::take(problem);
   aos::Sampler random{1};
-  const auto odds = Belief::initial(random).observations(0, random);
+  const auto odds = initial_belief(problem).observations(0, random);
   EXPECT_EQUAL(odds.size(), 3u);
   EXPECT_EQUAL(odds[0].first, 4);
   EXPECT_NEAR(odds[0].second, 0.25 * 0.5 + 0.75 * 0.9, 1e-12);
@@ -75,18 +72,16 @@ TEST("Observations come with their probabilities, the likeliest first") {
 
 TEST("A state that has ended stays in the belief, and is told by how it ended") {
   const Problem corridor = units::corridor(1, 0.9);
-  TableModel::take(corridor);
   aos::Sampler random{1};
-  const Belief over = Belief::initial(random).predicted(0, random);
+  const Belief over = initial_belief(corridor).predicted(0, random);
   EXPECT_NEAR(over.probability_of(aos::Ending::goal), 1.0, 1e-12);
   EXPECT_NEAR(over.predicted(1, random).probability_of(aos::Ending::goal), 1.0, 1e-12);
 }
 
 TEST("A mixture has the weights of both beliefs in their shares") {
   const Problem tiger = units::tiger();
-  TableModel::take(tiger);
+  const Belief initial = initial_belief(tiger);
   aos::Sampler random{1};
-  const Belief initial = Belief::initial(random);
   const Belief sure = exam::posterior_of(initial, 0, 1, random).first;
   EXPECT_NEAR(weight_of(initial.mixed_with(sure, 0.4), 1), 0.6 * 0.5 + 0.4 * 0.85, 1e-12);
 }
@@ -94,9 +89,8 @@ TEST("A mixture has the weights of both beliefs in their shares") {
 TEST("Draws from a belief follow its weights") {
   Problem problem = units::world(3, 1, 0.9);
   problem.starts = {{0, 0.2}, {1, 0.3}, {2, 0.5}};
-  TableModel::take(problem);
+  const Belief belief = initial_belief(problem);
   aos::Sampler random{7};
-  const Belief belief = Belief::initial(random);
   std::map<std::uint32_t, int> drawn;
   constexpr int draws = 40'000;
   for (int i = 0; i < draws; ++i) ++drawn[TableModel::number_of(belief.sample(random))];
@@ -106,13 +100,11 @@ TEST("Draws from a belief follow its weights") {
 
 TEST("Thinning out keeps heavy states as they are, tells what it drops, and changes no weight on average") {
   Problem problem = units::world(200, 1, 0.9);
-  TableModel::take(problem);
   aos::List<TableModel::State> states;
   problem.starts.clear();
   for (std::uint32_t state = 0; state < 200; ++state) problem.starts.push_back({state, 1.0 / 200});
-  TableModel::take(problem);
+  const Belief initial = initial_belief(problem);  // outlives the loop over its particles
   aos::Sampler random{3};
-  const Belief initial = Belief::initial(random);  // outlives the loop over its particles
   for (const auto& particle : initial.particles()) states.push_back(particle.state);
   aos::List<double> sums(200, 0.0);
   constexpr int rounds = 4000;
@@ -165,10 +157,9 @@ TEST("States drawn by their weights do not agree with a pattern in their order")
   Problem problem = units::world(4000, 1, 0.9);
   problem.starts.clear();
   for (std::uint32_t state = 0; state < 4000; ++state) problem.starts.push_back({state, 1.0 / 4000});
-  TableModel::take(problem);
+  const Belief belief = initial_belief(problem);
   aos::Sampler random{6};
   int even = 0;
-  const Belief belief = Belief::initial(random);
   aos::draw_evenly<TableModel>(belief.particles(), 2000, random, [&](const TableModel::State& state) {
     even += TableModel::number_of(state) % 2 == 0 ? 1 : 0;
   });
@@ -186,9 +177,8 @@ TEST("The error bound holds how far a belief with too many states is from the ex
     total += 1.0 / (1 + state);
   }
   for (std::uint32_t state = 0; state < many; ++state) problem.starts.push_back({state, 1.0 / (1 + state) / total});
-  TableModel::take(problem);
+  const Belief belief = initial_belief(problem);
   aos::Sampler random{1};
-  const Belief belief = Belief::initial(random);
   EXPECT(belief.particles().size() < many);
   EXPECT(!belief.is_exact());
   double overlap = 0;

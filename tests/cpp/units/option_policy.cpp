@@ -11,7 +11,8 @@ namespace option_policy_tests {
 
 using units::Problem;
 using units::TableModel;
-using Belief = aos::Belief<TableModel>;
+using units::Belief;
+using units::initial_belief;
 
 constexpr int look = 0, go = 1, take = 2;
 
@@ -19,8 +20,7 @@ constexpr int look = 0, go = 1, take = 2;
 // where there is none. A state has a bit for the room, two for the things, and two for those that are taken.
 Problem two_rooms(double first, double second) {
   Problem problem = units::world(32, 3, 0.95);
-  problem.sensings.push_back({{0, 0.85}, {1, 0.15}});
-  problem.sensings.push_back({{0, 0.15}, {1, 0.85}});
+  units::hear(problem, 0.85);
   problem.starts.clear();
   for (const std::uint32_t one : {0u, 1u}) {
     for (const std::uint32_t other : {0u, 1u}) {
@@ -46,27 +46,30 @@ aos::List<aos::ExactValue> exact_values(const Belief& belief, int decisions) {
   return evaluation.action_values(space.exact_weights_of(belief), decisions);
 }
 
+// What options tell of each action at the first belief of a problem.
+auto told_by_options(const Problem& problem, const Belief& belief) {
+  aos::Sampler random{1};
+  aos::OptionPolicy<TableModel> policy;
+  EXPECT(policy.prepare(belief, 1e6, 0, random).empty());
+  policy.search(belief, problem.horizon, random, {});
+  return policy.estimates();
+}
+
 TEST("Before a robot leaves for what may be better elsewhere it looks where it is") {
   for (const double first : {0.3, 0.5, 0.6}) {
     const Problem problem = two_rooms(first, 0.7);
-    TableModel::take(problem);
-    aos::Sampler random{1};
-    const Belief belief = Belief::initial(random);
+    const Belief belief = initial_belief(problem);
     const auto exact = exact_values(belief, 7);
     EXPECT(exact[look].value > std::max(exact[go].value, exact[take].value) + 0.3);
-    aos::OptionPolicy<TableModel> policy;
-    EXPECT(policy.prepare(belief, 1e6, 0, random).empty());
-    policy.search(belief, problem.horizon, random, {});
-    const auto& estimates = policy.estimates();
+    const auto estimates = told_by_options(problem, belief);
     EXPECT(estimates[look].q > std::max(estimates[go].q, estimates[take].q));
   }
 }
 
 TEST("A look that had no time is gone on with, whatever it takes") {
   const Problem problem = two_rooms(0.5, 0.7);
-  TableModel::take(problem);
+  const Belief belief = initial_belief(problem);
   aos::Sampler random{1};
-  const Belief belief = Belief::initial(random);
   aos::OptionPolicy<TableModel> policy;
   EXPECT(!policy.prepare(belief, 1e6, 1e-9, random).empty());
   EXPECT(!policy.knows_ways());
@@ -81,8 +84,7 @@ TEST("A robot looks elsewhere before it looks for ever where it knows that nothi
   problem.endings[end] = 1;
   problem.endings[end + 1] = 2;
   problem.horizon = 40;
-  problem.sensings.push_back({{0, 0.95}, {1, 0.05}});
-  problem.sensings.push_back({{0, 0.05}, {1, 0.95}});
+  units::hear(problem, 0.95);
   problem.starts.clear();
   for (std::uint32_t thing = 1; thing < rooms; ++thing) problem.starts.push_back({thing, 1.0 / (rooms - 1)});
   for (std::uint32_t state = 0; state < end; ++state) {
@@ -91,13 +93,8 @@ TEST("A robot looks elsewhere before it looks for ever where it knows that nothi
     units::row(problem, state, go) = {{1.0, (room + 1) % rooms * rooms + thing, 0, -1}};
     units::row(problem, state, take) = {{1.0, room == thing ? end : end + 1, 0, room == thing ? 20.0 : -20.0}};
   }
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  const Belief belief = Belief::initial(random);
-  aos::OptionPolicy<TableModel> policy;
-  EXPECT(policy.prepare(belief, 1e6, 0, random).empty());
-  policy.search(belief, problem.horizon, random, {});
-  EXPECT(policy.estimates()[go].q > policy.estimates()[look].q);
+  const auto estimates = told_by_options(problem, initial_belief(problem));
+  EXPECT(estimates[go].q > estimates[look].q);
 }
 
 // A thing is in one of 48 places, of which a scan covers twelve. No scan makes any place worth a try. Another test tells for less what is of no use.
@@ -106,8 +103,7 @@ TEST("A scan counts for the tests that it makes cheaper, and what is of no use c
   Problem problem = units::world(2 * places + 1, first_take + places, 0.98);
   problem.endings[2 * places] = 1;
   problem.horizon = 60;
-  problem.sensings.push_back({{0, 0.9}, {1, 0.1}});
-  problem.sensings.push_back({{0, 0.1}, {1, 0.9}});
+  units::hear(problem, 0.9);
   problem.starts.clear();
   for (std::uint32_t state = 0; state < 2 * places; ++state) {
     const std::uint32_t thing = state / 2;
@@ -119,13 +115,7 @@ TEST("A scan counts for the tests that it makes cheaper, and what is of no use c
       units::row(problem, state, first_take + place) = {{1.0, place == thing ? 2 * places : state, 0, place == thing ? 30.0 : -8.0}};
     }
   }
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  const Belief belief = Belief::initial(random);
-  aos::OptionPolicy<TableModel> policy;
-  EXPECT(policy.prepare(belief, 1e6, 0, random).empty());
-  policy.search(belief, problem.horizon, random, {});
-  const auto& estimates = policy.estimates();
+  const auto estimates = told_by_options(problem, initial_belief(problem));
   const auto best = std::ranges::max_element(estimates, {}, [](const aos::ActionEstimate& estimate) { return estimate.n > 0 ? estimate.q : -1e9; });
   EXPECT(best - estimates.begin() < scans);
 }
@@ -141,10 +131,9 @@ TEST("What a step earns that changes nothing is told apart from what ways earn")
         units::row(problem, state, action) = {{1.0, is_idle ? state : 1 - state, 0, is_idle ? idle : action == 2 ? 1.0 : -1.0}};
       }
     }
-    TableModel::take(problem);
     aos::Sampler random{1};
     aos::OptionPolicy<TableModel> policy;
-    EXPECT(policy.prepare(Belief::initial(random), 1e5, 0, random).empty());
+    EXPECT(policy.prepare(initial_belief(problem), 1e5, 0, random).empty());
     EXPECT(policy.earns_idle() == (idle > 0));
     EXPECT(!policy.earns_anyway());
   }
@@ -161,9 +150,8 @@ TEST("A reward that an action has earned does not count again where the mission 
       if (!(state & 1u << job)) units::row(problem, state, job) = {{1.0, state | 1u << job, 0, 20}};
     }
   }
-  TableModel::take(problem);
+  const Belief belief = initial_belief(problem);
   aos::Sampler random{1};
-  const Belief belief = Belief::initial(random);
   const aos::DecisionClock clock;
   aos::OptionLibrary<TableModel> library{clock};
   library.prepare(belief, random);
@@ -188,8 +176,7 @@ Problem two_things(double odds, double of_way) {
   constexpr int things = 2, go = 3 * things;
   constexpr std::uint32_t far = 16;
   Problem problem = units::world(32, go + 1, 0.95);
-  problem.sensings.push_back({{0, 0.75}, {1, 0.25}});
-  problem.sensings.push_back({{0, 0.25}, {1, 0.75}});
+  units::hear(problem, 0.75);
   problem.starts.clear();
   problem.values.clear();
   problem.variables = 2 * things + 1;
@@ -211,14 +198,10 @@ Problem two_things(double odds, double of_way) {
 
 // What the action that is chosen is worth less than the best one.
 double lost_by_options(const Problem& problem) {
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  const Belief belief = Belief::initial(random);
+  const Belief belief = initial_belief(problem);
   const auto exact = exact_values(belief, 9);
-  aos::OptionPolicy<TableModel> policy;
-  EXPECT(policy.prepare(belief, 1e6, 0, random).empty());
-  policy.search(belief, problem.horizon, random, {});
-  const auto best = std::ranges::max_element(policy.estimates(), {}, &aos::ActionEstimate::q) - policy.estimates().begin();
+  const auto estimates = told_by_options(problem, belief);
+  const auto best = std::ranges::max_element(estimates, {}, &aos::ActionEstimate::q) - estimates.begin();
   return std::ranges::max_element(exact, {}, &aos::ExactValue::value)->value - exact[best].value;
 }
 

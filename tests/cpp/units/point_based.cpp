@@ -18,9 +18,7 @@ namespace point_based = aos::point_based;
 
 // By the engine's own way to numbers. States are numbered as they are found, so those of the start come first.
 point_based::FlatModel flat_model(const Problem& problem) {
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  const auto belief = aos::Belief<TableModel>::initial(random);
+  const units::Belief belief = units::initial_belief(problem);
   aos::StateSpace<TableModel> space;
   space.reach(belief);
   point_based::FlatModel model = space.rows();
@@ -29,6 +27,11 @@ point_based::FlatModel flat_model(const Problem& problem) {
 }
 
 bool never() { return false; }
+
+// A search at the first belief of the tiger.
+struct TigerSearch : point_based::OnlineSarsop {
+  TigerSearch() : OnlineSarsop{flat_model(units::tiger())} { EXPECT(move_to({{0, 0.5}, {1, 0.5}})); }
+};
 
 TEST("The first bounds of a corridor enclose its value, and trials close them") {
   for (const std::uint32_t cells : {1u, 2u, 8u, 60u}) {
@@ -46,9 +49,7 @@ TEST("The first bounds of a corridor enclose its value, and trials close them") 
 }
 
 TEST("The bounds of the tiger close on the value that other programs give") {
-  const Problem tiger = units::tiger();
-  point_based::OnlineSarsop search{flat_model(tiger)};
-  EXPECT(search.move_to({{0, 0.5}, {1, 0.5}}));
+  TigerSearch search;
   search.improve(300'000'000, never);
   const auto [lower, upper] = search.bounds();
   EXPECT(lower <= 19.3714 && 19.3713 <= upper);
@@ -56,9 +57,7 @@ TEST("The bounds of the tiger close on the value that other programs give") {
 }
 
 TEST("Bounds come nearer with every trial, and never cross") {
-  const Problem tiger = units::tiger();
-  point_based::OnlineSarsop search{flat_model(tiger)};
-  search.move_to({{0, 0.5}, {1, 0.5}});
+  TigerSearch search;
   auto before = search.bounds();
   for (int trial = 0; trial < 200; ++trial) {
     search.improve(1, never);
@@ -70,9 +69,7 @@ TEST("Bounds come nearer with every trial, and never cross") {
 }
 
 TEST("Each action has bounds of its own, of which the best are those of the belief") {
-  const Problem tiger = units::tiger();
-  point_based::OnlineSarsop search{flat_model(tiger)};
-  search.move_to({{0, 0.5}, {1, 0.5}});
+  TigerSearch search;
   search.improve(3'000'000, never);
   search.open_actions(never);
   const auto actions = search.action_bounds();
@@ -100,9 +97,7 @@ TEST("Without a horizon, missions tell how much of the value comes after the dec
 }
 
 TEST("The best of the simple policies listens to the tiger, and returns less than the optimum") {
-  const Problem tiger = units::tiger();
-  point_based::OnlineSarsop search{flat_model(tiger)};
-  search.move_to({{0, 0.5}, {1, 0.5}});
+  TigerSearch search;
   std::uint64_t work = 0;
   const auto policy = search.best_policy(60, {0, never}, work);
   EXPECT(policy.has_value());
@@ -113,8 +108,7 @@ TEST("The best of the simple policies listens to the tiger, and returns less tha
 }
 
 TEST("The simple policy that is compared first has the time of all missions") {
-  point_based::OnlineSarsop search{flat_model(units::tiger())};
-  search.move_to({{0, 0.5}, {1, 0.5}});
+  TigerSearch search;
   std::uint64_t usual = 0, all = 0;
   EXPECT(!search.best_policy(60, {1, never}, usual).has_value());
   EXPECT(search.best_policy(60, {1, never}, {0, never}, all).has_value());
@@ -122,9 +116,7 @@ TEST("The simple policy that is compared first has the time of all missions") {
 }
 
 TEST("Bounds of actions hold before these are opened, and are narrower afterwards") {
-  const Problem tiger = units::tiger();
-  point_based::OnlineSarsop search{flat_model(tiger)};
-  search.move_to({{0, 0.5}, {1, 0.5}});
+  TigerSearch search;
   const double values[] = {19.3714, -45 + 0.95 * 19.3714};
   double gaps[] = {0, 0};
   for (const bool is_open : {false, true}) {

@@ -9,14 +9,9 @@ namespace state_space_tests {
 
 using units::Problem;
 using units::TableModel;
-using Belief = aos::Belief<TableModel>;
+using units::Belief;
+using units::initial_belief;
 using Space = aos::StateSpace<TableModel>;
-
-Belief initial_belief(const Problem& problem) {
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  return Belief::initial(random);
-}
 
 TEST("All states that can be reached are listed, and no others") {
   Problem problem = units::corridor(6, 0.9);

@@ -10,16 +10,11 @@ namespace wide_values_tests {
 
 using units::Problem;
 using units::TableModel;
-using Belief = aos::Belief<TableModel>;
+using units::Belief;
+using units::initial_belief;
 using Wide = aos::WideValues<TableModel>;
 
 constexpr int horizon = 400;
-
-Belief initial_belief(const Problem& problem) {
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  return Belief::initial(random);
-}
 
 // A problem with up to three outcomes of each of four actions, each step's reward between -5 and 5.
 Problem drawn(std::uint64_t seed, std::size_t states) {

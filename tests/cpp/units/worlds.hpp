@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aos/base/list.hpp"
+#include "aos/belief/belief.hpp"
 #include "problem.hpp"
 #include "table_model.hpp"
 
@@ -9,6 +10,15 @@ namespace units {
 
 using exam::Problem;
 using exam::TableModel;
+using Belief = aos::Belief<TableModel>;
+
+// The belief with which a problem begins. The problem is the model from then on, as long as it lives.
+inline Belief initial_belief(const Problem& problem) {
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  return Belief::initial(random);
+}
+Belief initial_belief(const Problem&&) = delete;
 
 // Where a row is not filled, the state stays, nothing is seen and nothing is earned.
 inline Problem world(std::size_t states, std::size_t actions, double discount) {
@@ -35,13 +45,18 @@ inline aos::List<exam::Outcome>& row(Problem& problem, std::size_t state, std::s
   return problem.rows[state * problem.actions + action];
 }
 
+// Adds what is observed where 0 is right, and where 1 is: the right one with this probability.
+inline void hear(Problem& problem, double right) {
+  problem.sensings.push_back({{0, right}, {1, 1 - right}});
+  problem.sensings.push_back({{0, 1 - right}, {1, right}});
+}
+
 // The tiger behind one of two doors (Kaelbling, Littman and Cassandra, 1998): listen, open left, open right. It is
 // heard on the left as 0.
 inline Problem tiger() {
   Problem problem = world(2, 3, 0.95);
   problem.starts = {{0, 0.5}, {1, 0.5}};
-  problem.sensings.push_back({{0, 0.85}, {1, 0.15}});
-  problem.sensings.push_back({{0, 0.15}, {1, 0.85}});
+  hear(problem, 0.85);
   for (std::uint32_t side = 0; side < 2; ++side) {
     row(problem, side, 0) = {{1.0, side, side + 1, -1}};
     for (std::size_t door = 0; door < 2; ++door) {
