@@ -1,3 +1,5 @@
+import re
+
 import pytest
 from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
 from places import BUNDLES
@@ -58,6 +60,47 @@ __moduleResponse = done;
 """,
 }
 """22,500 places that all matter."""
+
+FAULTS = {
+    "faults.ef": """project: faults
+horizon: 12
+discount: 1
+
+state_variable: int fault
+
+state_variable: bool is_over
+
+initial_belief:
+state.fault = AOS.SampleDiscrete(std::vector<double>(40, 0.025));
+
+reward_code:
+if (state.is_over) __isGoalState = true;
+""",
+    "test.sd": """project: faults
+
+parameter: int below
+
+available_parameters_code:
+for (int below = 1; below < 40; below++) __possibleParameters.push_back(std::make_tuple(below));
+
+dynamic_model:
+__reward = -0.5;
+__moduleResponse = AOS.Bernoulli(0.85) == (state.fault < below) ? lower : higher;
+""",
+    "name.sd": """project: faults
+
+parameter: int fault
+
+available_parameters_code:
+for (int fault = 0; fault < 40; fault++) __possibleParameters.push_back(std::make_tuple(fault));
+
+dynamic_model:
+__reward = state.fault == fault ? 20 : -20;
+state__.is_over = true;
+__moduleResponse = named;
+""",
+}
+"""So many tests that a simple policy decides."""
 
 
 @pytest.fixture
@@ -196,3 +239,15 @@ async def test_what_ends_a_mission_leaves_nothing_for_after_the_horizon(price, c
     assert ("of it after the 40 decisions that values count" in plan.why) == (choice == "check")
     sold = plan.actions[1]
     assert (sold.at_least, sold.at_most) == pytest.approx((price, price))
+
+
+async def test_the_value_of_a_simple_policy_is_what_its_missions_return():
+    async with engine_of_text(FAULTS) as engine:
+        plan = await _decide(engine, simulations=2_000)
+    returned = re.search(r"a simple policy decides, since it returns (-?[\d.]+) in played missions", plan.why)
+    assert returned is not None
+    assert plan.best.q == pytest.approx(float(returned[1]), abs=0.01)
+    # No search has closed the gap, and a later one may gain all of it.
+    assert plan.best.at_most is not None
+    assert plan.best.at_most - plan.best.q > 5
+    assert plan.best.q + 2 * plan.best.stderr >= plan.best.at_most

@@ -151,7 +151,8 @@ class PointBased {
     }
     return result;
   }
-  // Estimates with a value between the bounds. Where the search has no horizon, missions tell what comes after the horizon.
+  // Estimates with a value between the bounds. Where a simple policy returns more than is proven, it is what missions by that policy
+  // return: the middle promises half of a gap that nobody has closed. Where the search has no horizon, missions tell what comes after the horizon.
   // Without missions it is worth nothing at least, and as much as now at most.
   Estimates values(Estimates estimates, int choice) const {
     if (running_ <= 0) return estimates;
@@ -164,10 +165,17 @@ class PointBased {
       uppers.push_back(bounds.upper + error_ - lost - going_on * std::min(worst, 0.0));
       lowers.push_back(std::min(bounds.lower - error_ - lost + gained - going_on * std::max(best, 0.0), uppers.back()));
     }
-    if (policy_) lowers[policy_->action] = std::clamp(policy_->within, lowers[policy_->action], uppers[policy_->action]);
+    double beyond = 0;  // the policy, which later searches may better
+    if (policy_) {
+      double& lower = lowers[choice];
+      double& upper = uppers[choice];
+      lower = std::clamp(policy_->within, lower, upper);
+      beyond = (upper - lower) / 2;
+      upper = lower;
+    }
     set_between(estimates, lowers, uppers, choice);
     const ActionEstimate& chosen = estimates[static_cast<std::size_t>(choice)];
-    double unknown = error_of_missions(chosen.q);
+    double unknown = std::hypot(error_of_missions(chosen.q), beyond);
     // Without a horizon a mission that plans anew returns what is proven: lower bounds hold for the next decision, too.
     if (is_endless_ && !policy_) unknown = std::min(unknown, chosen.at_most - chosen.at_least);
     for (ActionEstimate& estimate : estimates) {
