@@ -32,7 +32,6 @@ _PROBLEMS = {
         _ours("pocman", runs=50),
         _ours("lightdark", runs=100),
         _ours("laser", runs=100),
-        _ours("laser-discrete", runs=100),
         _ours("ship10", runs=50, steps=100),
         _ours("maint10", runs=50),
         _ours("lightdark-normal", runs=100),
