@@ -301,30 +301,3 @@ async def test_a_dropped_bundle_without_documents_is_told(registry: Path, other:
         (registry / name).rename(registry / "drop" / name)
         told = (await anext(aiter(reports)))[1]
     assert (told.source, told.is_accepted, codes(told)) == (name, False, {"AOS120"})
-
-
-async def test_the_catalogue_survives_a_restart(
-    tmp_path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
-):
-    async with running_registry(tmp_path / "run", endpoint, bus, keys):
-        await push(bus, keys, finer)
-        before = await current(bus, keys)
-    async with running_registry(tmp_path / "run", endpoint, bus, keys):
-        assert await current(bus, keys) == before
-
-
-async def test_a_changed_document_with_the_version_it_had_is_refused_and_a_higher_one_taken(
-    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
-):
-    def pick(version: str, reward: str) -> dict[str, bytes]:
-        text = finer["pick.sd"].replace(b"__reward = -2;", f"__reward = {reward};".encode())
-        first, rest = text.split(b"\n", 1)
-        return {"pick.sd": b"\n".join([first, f"version: {version}".encode(), rest])}
-
-    await push(bus, keys, finer | pick("1.2", "-2"))
-    assert (await push(bus, keys, pick("1.2", "-2"))).is_accepted
-    refused = await push(bus, keys, pick("1.2", "-3"))
-    assert (refused.is_accepted, refused.revision) == (False, 1)
-    assert codes(refused) == {"AOS129"}
-    higher = await push(bus, keys, pick("1.10", "-3"))
-    assert (higher.is_accepted, higher.revision, higher.changed) == (True, 2, ("pick",))
