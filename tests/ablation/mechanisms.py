@@ -38,7 +38,7 @@ _OPTIONS = (
     "test_plans",
     "raked_states",
 )
-_SAVINGS = ("savings", "saving_lookahead", "saving_rollouts")
+_SAVINGS = ("savings", "saving_lookahead", "saving_rollouts", "later_attention")
 _SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree")
 
 ROUTES = (

@@ -15,7 +15,7 @@
   /* options */ \
   of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways) of(detours) of(alike_states) of(twins) of(sequels) of(past_ends) of(moved_by_ways) of(reported_worlds) of(idle_income) of(test_plans) of(raked_states) \
   /* savings */ \
-  of(saving_lookahead) of(saving_rollouts) \
+  of(saving_lookahead) of(saving_rollouts) of(later_attention) \
   /* SARSOP */ \
   of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies) \
   /* POMCP's values of states, and its prior */ \

@@ -1,7 +1,10 @@
 // What a state is worth to a robot that does not plan: one that rests, or one that acts at random. To rest is to take the one
 // action for ever that returns most so. The values are tables over few variables (cell_tables.hpp), fitted to simulated
 // returns, first of whole missions, then of an eighth of their steps and what the first tables tell of the state after it:
-// less of that is luck, which hides what an action does. No best successor makes returns of a policy too high.
+// less of that is luck, which hides what an action does.
+//
+// To a robot that never attends to a thing again, or only by chance, to attend to it now is worth too much, and it is done too early.
+// So the values of chance can be improved: they become those of a robot that sees the state and takes what is best by them.
 #pragma once
 
 #include "aos/base/mixed.hpp"
@@ -37,8 +40,9 @@ class RestValues {
   // steps and not in time, so that decisions can be repeated.
   bool learn(BasePolicy base, const Belief<Model>& belief, int horizon, Sampler& random) {
     horizon_ = horizon;
+    used_.clear();
     find_action(belief, random);
-    const List<State> examples = walked(belief, random);
+    const List<State> examples = walked(belief, affordable_examples(horizon_), random);
     if (examples.empty() || !cells_.find(examples)) return false;
     List<std::uint16_t> rows;
     List<double> targets;
@@ -55,6 +59,25 @@ class RestValues {
       for (int j = 0; j < nearer; ++j) targets[i] += returned_by(base, settling(), examples[i], random) / nearer;
     }
     fit(rows, targets);
+    return !used_.empty();
+  }
+
+  // Improves what was learned: for some steps the action is taken that is best by the values so far, and so on. Returns whether
+  // values tell states apart.
+  bool improve(const Belief<Model>& belief, Sampler& random) {
+    const double of_choice = 2.0 * (Model::action_count() + 1);  // a value takes about as long as a step
+    const List<State> examples = walked(belief, affordable_examples(of_choice * static_cast<double>(settling())), random);
+    List<std::uint16_t> rows;
+    for (const State& example : examples) cells_.add_row(example, rows);
+    List<double> targets(examples.size());
+    for (int round = 0; round < rounds && !used_.empty(); ++round) {
+      for (std::size_t i = 0; i < examples.size(); ++i) {
+        tell(i, examples.size());
+        targets[i] = returned_in(settling(), examples[i], [&](const State& state) { return best_action(state, random); },
+                                 [&](State& state, int taken, std::size_t) { return Model::step(state, taken, random); });
+      }
+      fit(rows, targets);
+    }
     return !used_.empty();
   }
 
@@ -75,11 +98,12 @@ class RestValues {
   }
 
  private:
-  static constexpr std::size_t max_steps = 600'000;  // of the model, for examples
+  static constexpr double max_steps = 600'000;  // of the model, for examples
   static constexpr std::size_t fewest_examples = 200;
   static constexpr std::size_t most_examples = 20'000;
   static constexpr std::size_t examples_between_looks = 64;
   static constexpr std::size_t sweeps = 30;
+  static constexpr int rounds = 3;  // of improvement
   static constexpr int nearer = 8;  // returns of each example at last, of so many times fewer steps
   static constexpr int first_tries = 4;  // of each action, with other states; four times as many of each better quarter
   static constexpr std::size_t kept_share = 4;
@@ -128,9 +152,29 @@ class RestValues {
                        [&](State& state, int taken, std::size_t) { return Model::step(state, taken, random); });
   }
 
-  // Takes a state from each random walk.
-  List<State> walked(const Belief<Model>& belief, Sampler& random) {
-    const std::size_t wanted = std::clamp(max_steps / static_cast<std::size_t>(std::max(horizon_, 1)), fewest_examples, most_examples);
+  // The best action by the values, under the same luck for all.
+  int best_action(const State& state, Sampler& random) const {
+    const Sampler luck{random.bits()};
+    int best = action_;
+    double most = -std::numeric_limits<double>::infinity();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      State next = state;
+      Sampler same = luck;
+      const double reward = Model::step(next, action, same).reward;
+      const double worth = reward + Model::discount * value(next);
+      if (worth <= most) continue;
+      most = worth;
+      best = action;
+    }
+    return best;
+  }
+
+  static std::size_t affordable_examples(double steps_of_example) {
+    return std::clamp(static_cast<std::size_t>(max_steps / std::max(steps_of_example, 1.0)), fewest_examples, most_examples);
+  }
+
+  // Takes a state from each of so many random walks.
+  List<State> walked(const Belief<Model>& belief, std::size_t wanted, Sampler& random) {
     List<State> examples;
     for (std::size_t walks = 0; examples.size() < wanted && walks < 4 * wanted; ++walks) {
       State state = belief.sample(random);

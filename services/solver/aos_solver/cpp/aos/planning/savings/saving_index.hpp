@@ -23,23 +23,12 @@ class SavingIndex final : public StateValues<Model> {
   // Learns what states are worth after a way, finds ways, and plays missions by their index that see the state. Returns
   // what these return on average; minus infinity where that is not beyond doubt more than rests return.
   double learn(BasePolicy base, const LeafCells<Model>& cells, const Belief<Model>& belief, int horizon, Sampler random) {
-    ways_.clear();
-    incomes_.clear();
-    decided_.clear();
-    if (!values_.learn(base, belief, horizon, random)) return -std::numeric_limits<double>::infinity();
-    constexpr double beyond_doubt = 2;  // standard errors
-    double sum = 0;
-    SampleMean more;
-    for (int mission = 0; mission < missions; ++mission) {
-      progress::tell("finding out what can be saved", mission, missions);
-      const State start = belief.sample(random);
-      if (Model::ending(start) != Ending::running) continue;
-      const double returned = played(start, mission < practised ? &cells : nullptr, horizon, random);
-      if (mission < practised) continue;
-      sum += returned;
-      more.add(returned - values_.returned(values_.action(), start, StepLuck{random}));
-    }
-    return more.count() > 1 && more.mean() > beyond_doubt * more.error() ? sum / more.count() : -std::numeric_limits<double>::infinity();
+    return values_.learn(base, belief, horizon, random) ? practise(cells, belief, horizon, random) : nothing;
+  }
+  // The same with the values that another index has learned, once they are improved.
+  double improve(const SavingIndex& other, const LeafCells<Model>& cells, const Belief<Model>& belief, int horizon, Sampler random) {
+    values_ = other.values_;
+    return values_.improve(belief, random) ? practise(cells, belief, horizon, random) : nothing;
   }
 
   // Looks for ways from a state. `steps` is counted down.
@@ -94,12 +83,32 @@ class SavingIndex final : public StateValues<Model> {
   double income_of(std::size_t way) const { return incomes_[way]; }
 
  private:
+  static constexpr double nothing = -std::numeric_limits<double>::infinity();  // is saved beyond doubt
   static constexpr int missions = 20;   // that are played
   static constexpr int practised = 4;  // of these, in which ways are looked for
   static constexpr int between_looks = 6;  // steps of these
   static constexpr std::size_t followed = 32;  // ways that have decided most often
   static constexpr std::size_t most_ways = 128;
   static constexpr std::size_t kept_ways = 64;
+
+  double practise(const LeafCells<Model>& cells, const Belief<Model>& belief, int horizon, Sampler& random) {
+    ways_.clear();
+    incomes_.clear();
+    decided_.clear();
+    constexpr double beyond_doubt = 2;  // standard errors
+    double sum = 0;
+    SampleMean more;
+    for (int mission = 0; mission < missions; ++mission) {
+      progress::tell("finding out what can be saved", mission, missions);
+      const State start = belief.sample(random);
+      if (Model::ending(start) != Ending::running) continue;
+      const double returned = played(start, mission < practised ? &cells : nullptr, horizon, random);
+      if (mission < practised) continue;
+      sum += returned;
+      more.add(returned - values_.returned(values_.action(), start, StepLuck{random}));
+    }
+    return more.count() > 1 && more.mean() > beyond_doubt * more.error() ? sum / more.count() : nothing;
+  }
 
   // The return of a mission that sees the state. With `cells` ways are looked for.
   double played(State state, const LeafCells<Model>* cells, int horizon, Sampler& random) {

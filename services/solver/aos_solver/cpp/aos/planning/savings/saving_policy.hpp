@@ -2,8 +2,9 @@
 //
 // A few states of the belief stand for it. Ways are found by searches from some of them (saving_search.hpp), kept from
 // decision to decision with what is left of each after its first actions, and valued from all states (saving_index.hpp).
-// States after a way are worth what a robot returns that rests, or one that acts at random. A rest tells what is saved best.
-// It knows nothing of what serves later only, such as a tank that is full, and chance does. Missions tell which one to go by.
+// States after a way are worth what a robot returns that rests, one that acts at random, or one that sees the state and acts by
+// the values of chance. A rest tells what is saved best. It knows nothing of what serves later only, such as a tank that is full,
+// and chance does. Both attend to things too early, as if nothing could be done later. Missions tell which one to go by.
 #pragma once
 
 #include "aos/base/stable_order.hpp"
@@ -31,14 +32,15 @@ class SavingPolicy {
     index_ = nullptr;
     cells_.prepare(belief, random);
     double most = -std::numeric_limits<double>::infinity();
-    for (const BasePolicy base : {BasePolicy::rest, BasePolicy::random}) {
-      SavingIndex<Model>& index = base == BasePolicy::rest ? by_rest_ : by_chance_;
-      const double returned = index.learn(base, cells_, belief, horizon, Sampler{random.bits()});
-      if (returned <= most) continue;
+    const auto note = [&](SavingIndex<Model>& index, double returned) {
+      if (returned <= most) return;
       most = returned;
       index_ = &index;
       seen_ = returned - mean_value(belief, index, random);
-    }
+    };
+    note(by_rest_, by_rest_.learn(BasePolicy::rest, cells_, belief, horizon, Sampler{random.bits()}));
+    note(by_chance_, by_chance_.learn(BasePolicy::random, cells_, belief, horizon, Sampler{random.bits()}));
+    if (switches::later_attention) note(by_sight_, by_sight_.improve(by_chance_, cells_, belief, horizon, Sampler{random.bits()}));
     return index_ != nullptr;
   }
 
@@ -169,7 +171,8 @@ class SavingPolicy {
   LeafCells<Model> cells_;
   SavingIndex<Model> by_rest_;
   SavingIndex<Model> by_chance_;
-  SavingIndex<Model>* index_ = nullptr;  // the better one; null if there are no ways
+  SavingIndex<Model> by_sight_;
+  SavingIndex<Model>* index_ = nullptr;  // the best one; null if there are no ways
   double seen_ = 0;
   // Of the last decision:
   SampledBelief<Model> belief_;
