@@ -8,7 +8,14 @@ from collections.abc import Mapping
 from enum import Enum
 from typing import Any
 
-_MAX_DEPTH = 64
+MAX_DEPTH = 64
+"""The levels of values in values; what contains itself has more."""
+
+
+def check_depth(left: int) -> None:
+    """Raises TypeError where no level is left."""
+    if left == 0:
+        raise TypeError(f"it is nested too deeply (more than {MAX_DEPTH} levels), or contains itself")
 
 
 def plain_from(value: Any, structures: tuple[type, ...] = ()) -> Any:
@@ -17,12 +24,11 @@ def plain_from(value: Any, structures: tuple[type, ...] = ()) -> Any:
     An object counts by its public fields: those in `__slots__`, where it has them, else its attributes. One
     of `structures` counts by all its attributes.
     """
-    return _plain(value, structures, _MAX_DEPTH)
+    return _plain(value, structures, MAX_DEPTH)
 
 
 def _plain(value: Any, structures: tuple[type, ...], depth: int) -> Any:
-    if depth == 0:
-        raise TypeError("the value is nested too deeply, or contains itself")
+    check_depth(depth)
     if isinstance(value, Enum):
         return _plain(value.value, structures, depth - 1)
     if value is None or type(value) in (bool, int, float, str, bytes):

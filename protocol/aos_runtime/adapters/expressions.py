@@ -10,6 +10,7 @@ from typing import Any
 
 from aos_protocol.errors import SkillError
 from aos_protocol.spelling import error_text
+from aos_runtime.plain_data import MAX_DEPTH, check_depth
 
 _KNOWN = {name: value for name, value in vars(math).items() if not name.startswith("_")}
 
@@ -30,11 +31,11 @@ def translated(expressions: Mapping[str, str] | None, fields: Mapping[str, Any],
     """
     if expressions is None:
         return dict(fields)
-    names = {name: _namespace(value) for name, value in fields.items()}
+    names = {name: _field(name, value, what) for name, value in fields.items()}
     values = {}
     for name, text in expressions.items():
         try:
-            values[name] = _plain(eval(text.strip(), dict(_KNOWN), names))
+            values[name] = _plain(eval(text.strip(), dict(_KNOWN), names), MAX_DEPTH)
         except Exception as error:
             known = ", ".join(sorted(fields)) or "none"
             raise SkillError(
@@ -44,14 +45,24 @@ def translated(expressions: Mapping[str, str] | None, fields: Mapping[str, Any],
     return values
 
 
-def _namespace(value: Any) -> Any:
+def _field(name: str, value: Any, what: str) -> Any:
+    try:
+        return _namespace(value, MAX_DEPTH)
+    except TypeError as error:
+        hint = "Give it with fewer levels"
+        raise SkillError(f"the field {name} of {what} cannot be read: {error}", hint=hint) from error
+
+
+def _namespace(value: Any, depth: int) -> Any:
     """Mappings get attributes: `goal.x`."""
+    check_depth(depth)
     if isinstance(value, Mapping):
-        return SimpleNamespace(**{str(name): _namespace(item) for name, item in value.items()})
-    return [_namespace(item) for item in value] if isinstance(value, list) else value
+        return SimpleNamespace(**{str(name): _namespace(item, depth - 1) for name, item in value.items()})
+    return [_namespace(item, depth - 1) for item in value] if isinstance(value, list) else value
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any, depth: int) -> Any:
+    check_depth(depth)
     if isinstance(value, SimpleNamespace):
-        return {name: _plain(item) for name, item in vars(value).items()}
-    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
+        return {name: _plain(item, depth - 1) for name, item in vars(value).items()}
+    return [_plain(item, depth - 1) for item in value] if isinstance(value, list | tuple) else value

@@ -1,5 +1,7 @@
 """The result of a call, from what an adapter has answered."""
 
+from collections.abc import Mapping
+from reprlib import repr as shown
 from typing import Any
 
 from aos_protocol.errors import SkillError
@@ -33,16 +35,21 @@ def _result_of(
 ) -> SkillResult:
     if isinstance(answer, Observed):
         what = f"the observation of {call.path}"
-        words = sendable({**answer.monitors, "": answer.response}, what)
-        for word in words.values():
+        for name, values in (("numbers", answer.numbers), ("monitors", answer.monitors)):
+            if not isinstance(values, Mapping):
+                message = f"the {name} of {what} are {shown(values)}, which is no mapping of names to values"
+                raise SkillError(message, hint=f"Mend the adapter {adapter}")
+        words = sendable(answer.monitors, what)
+        response = sendable({"response": answer.response}, what)["response"]
+        for word in (*words.values(), response):
             if not isinstance(word, str):
-                raise SkillError(f"{what} is {word!r}, which is no word", code="AOS510")
+                raise SkillError(f"{what} is {shown(word)}, which is no word", code="AOS510")
         numbers = sendable(answer.numbers, what)
-        return SkillResult(call.id, {}, published, words.pop(""), numbers, words)
+        return SkillResult(call.id, {}, published, response, numbers, words)
     try:
         given = dict(answer)
     except (TypeError, ValueError) as error:
-        message = f"{call.path} answered {answer!r}, which is no mapping of field names to values"
+        message = f"{call.path} answered {shown(answer)}, which is no mapping of field names to values"
         raise SkillError(message, code="AOS510", hint=f"Mend the adapter {adapter}") from error
     fields = translated(binding.result, given, f"the result of {call.path}")
     return SkillResult(call.id, sendable(fields, f"the result of {call.path}"), published)
