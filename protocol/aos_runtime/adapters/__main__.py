@@ -17,4 +17,4 @@ from aos_runtime.processes.lifecycle import run_service
 
 if __name__ == "__main__":
     settings = settings_told(sys.argv[1:])
-    run_service(AdapterSettings, serve_adapter, lease_s=ADAPTER_LEASE_S, settings=settings)
+    run_service(AdapterSettings, serve_adapter, lease_s=ADAPTER_LEASE_S, settings=settings, leave=sys.exit)

@@ -30,6 +30,7 @@ from aos_runtime.bus.config import LEASE_S
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.code_places import place_of
 from aos_runtime.older_python import BaseExceptionGroup
+from aos_runtime.processes.ending import end
 from aos_runtime.processes.parent import die_with_parent
 from aos_runtime.processes.settings import ServiceSettings, fault_path
 
@@ -76,16 +77,17 @@ def run_service(
     *,
     lease_s: float = LEASE_S,
     settings: S | None = None,
+    leave: Callable[[int], NoReturn] = end,
 ) -> NoReturn:
     """The whole of a service's `__main__`: runs `serve` until it returns, fails or is told to stop.
 
-    The settings are given, or stand in the file that the command line names.
+    The settings are given, or stand in the file that the command line names. `leave` ends the process.
     """
 
     async def run(settings: S) -> None:
         await serve_on_bus(settings, serve, lease_s=lease_s)
 
-    run_process(settings_type, run, settings)
+    run_process(settings_type, run, settings, leave=leave)
 
 
 async def serve_on_bus(
@@ -107,7 +109,11 @@ async def serve_on_bus(
 
 
 def run_process(
-    settings_type: type[S], run: Callable[[S], Coroutine[Any, Any, None]], settings: S | None = None
+    settings_type: type[S],
+    run: Callable[[S], Coroutine[Any, Any, None]],
+    settings: S | None = None,
+    *,
+    leave: Callable[[int], NoReturn] = end,
 ) -> NoReturn:
     """Runs a process as `run_service` does, where it opens its own connection to the bus."""
     die_with_parent()
@@ -133,7 +139,7 @@ def run_process(
     else:
         status = 0
     logging.shutdown()
-    sys.exit(status)
+    leave(status)
 
 
 async def _until_told_to_stop(work: Coroutine[Any, Any, None]) -> None:
