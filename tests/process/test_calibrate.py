@@ -218,3 +218,11 @@ def test_missions_are_explained_with_the_values_that_they_had(tmp_path):
     result = calibrate(missions, [DEPLOY / "bundles" / "errand"])
     assert (result.missions, result.remarks) == (8, ())
     assert result.steps == sum(len(mission.steps) for mission in missions)
+
+
+def test_a_deploy_file_stands_for_its_bundles_without_the_skills_that_it_leaves_out():
+    left_out = calibrate([], [DEPLOY / "armadillo-hotplug.yaml"])
+    whole = calibrate([], [FINER])
+    places = [{estimate.draw.span.file for estimate in each.estimates} for each in (left_out, whole)]
+    assert "pick.sd" in places[0]
+    assert places[1] - places[0] == {"observe_holding.sd"}

@@ -21,7 +21,7 @@ _END_BYTES = 1024**2
 _LOOK_S = 0.2
 
 
-@command("Example: aos logs solver arm --follow")
+@command("Example: aos logs solver pybullet --follow")
 def logs(
     services: Annotated[
         list[str] | None, typer.Argument(metavar="SERVICE...", help="Services, adapters, programs; else all")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.bundles.files import files_of_bundle
+from aos_deploy.bundles.files import deployment_at, files_of_bundles, files_of_deployment
 from aos_deploy.places import cache_dir
 from aos_lab.calibration.draws import Draws, Skipped, draws_of
 from aos_lab.calibration.estimation import DrawEstimate, estimate
@@ -68,14 +68,16 @@ def calibrate(
 ) -> Calibration:
     """Estimates the numbers of all draws in the bundles' documents; DocumentError if they have errors.
 
-    It has an event loop of its own for the engine, and none while it estimates: Ctrl-C ends that at once.
+    A deploy file stands for its bundles without the skills that it leaves out. The estimation has an
+    event loop of its own for the engine, and none while it estimates: Ctrl-C ends that at once.
     """
     files: dict[str, bytes] = {}
     paths: dict[str, Path] = {}
     for bundle in bundles:
-        found = files_of_bundle(bundle, ())
-        files |= found
-        paths |= {name: (bundle / name).resolve() for name in found}
+        deployment = deployment_at(bundle)
+        found = files_of_bundles((bundle,), ()) if deployment is None else files_of_deployment(deployment)
+        files |= found.files
+        paths |= {name: (found.bundles[name] / name).resolve() for name in found.files}
     loaded = load_files(files, name=", ".join(map(str, bundles)))
     if loaded.project is None:
         raise DocumentError(

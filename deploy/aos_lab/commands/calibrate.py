@@ -36,7 +36,14 @@ def calibrate(
             help="Run directories, folders of recorded missions, files of `aos export`",
         ),
     ],
-    bundle: Annotated[Path, typer.Argument(metavar="BUNDLE", exists=True, help="The documents")],
+    bundle: Annotated[
+        Path,
+        typer.Argument(
+            metavar="BUNDLE",
+            exists=True,
+            help="The documents; or a deploy file, for its bundles without what it leaves out",
+        ),
+    ],
     also: Annotated[
         list[Path] | None, typer.Option(metavar="BUNDLE", exists=True, help="More documents; repeatable")
     ] = None,
