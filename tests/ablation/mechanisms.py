@@ -37,6 +37,7 @@ _OPTIONS = (
     "idle_income",
     "test_plans",
     "raked_states",
+    "deadlines",
 )
 _SAVINGS = ("savings", "saving_lookahead", "saving_rollouts", "later_attention")
 _SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree")

@@ -213,4 +213,35 @@ TEST("A robot goes to things that are worth the way once they are tested") {
   for (const double of_way : {-0.5, -1.0, -2.0, -2.5}) EXPECT(lost_by_options(two_things(0.5, of_way)) < 0.1);
 }
 
+// Three things that may be sound, of which each can be tested and taken, once, until a stall closes. A state has a bit for each that is sound and each that is
+// taken, and the steps that are left.
+Problem three_things(std::uint32_t steps, double of_unsound) {
+  constexpr std::uint32_t things = 3, in_all = 64;
+  Problem problem = units::world(in_all * (steps + 1), 2 * things, 0.95);
+  problem.sensings.push_back({{0, 0.75}, {1, 0.25}});
+  problem.sensings.push_back({{0, 0.25}, {1, 0.75}});
+  problem.starts.clear();
+  problem.values.clear();
+  problem.variables = 2 * things + 1;
+  for (std::uint32_t sound = 0; sound < 8; ++sound) problem.starts.push_back({in_all * steps + sound, 1.0 / 8});
+  for (std::uint32_t state = 0; state < in_all * (steps + 1); ++state) {
+    for (std::uint32_t bit = 0; bit < 2 * things; ++bit) problem.values.push_back(state >> bit & 1);
+    problem.values.push_back(state / in_all);
+    if (state < in_all) problem.endings[state] = 1;
+    for (std::uint32_t thing = 0; state >= in_all && thing < things; ++thing) {
+      const bool is_sound = state >> thing & 1, is_taken = state >> (things + thing) & 1;
+      const std::uint32_t later = state - in_all;
+      units::row(problem, state, thing) = {{1.0, later, is_sound ? 2u : 1u, -0.1}};
+      units::row(problem, state, things + thing) = {{1.0, later | 8u << thing, 0, is_taken ? -1.0 : is_sound ? 8.0 : of_unsound}};
+    }
+  }
+  return problem;
+}
+
+TEST("No more is tested than there is time for before a mission is over whatever the robot does") {
+  for (const double of_unsound : {-2.0, -4.0, -6.0, -10.0}) {
+    for (const std::uint32_t steps : {2u, 3u, 4u, 5u, 6u}) EXPECT(lost_by_options(three_things(steps, of_unsound)) < 0.1);
+  }
+}
+
 }

@@ -28,9 +28,9 @@ struct StoppingPlan {
 
 class OptimalStopping {
  public:
-  // `rest` is earned after the choice, whatever it is.
-  OptimalStopping(const List<StoppingChoice>& choices, const List<const StoppingTest*>& tests, double discount, double rest)
-      : choices_(choices), tests_(tests), discount_(discount), rest_(rest) {}
+  // `rest` is earned after the choice, whatever it is, less `price` for each step until then.
+  OptimalStopping(const List<StoppingChoice>& choices, const List<const StoppingTest*>& tests, double discount, double rest, double price = 0)
+      : choices_(choices), tests_(tests), discount_(discount), rest_(rest), price_(price) {}
 
   // The best plan of so many tests; the weights may sum to less than 1. No test follows where to see the state is worth less.
   StoppingPlan plan(const StateWeights& weights, int most_tests) {
@@ -39,14 +39,14 @@ class OptimalStopping {
     StoppingPlan best{mass * rest_, nullptr, {List<double>(weights.size()), List<double>(weights.size(), 1.0), 1, 0}};
     List<double> seen(weights.size(), rest_);
     for (const StoppingChoice& choice : choices_) {
-      const double rest = choice.discount * rest_;
+      const double rest = choice.discount * rest_ - choice.steps * price_;
       for (std::size_t k = 0; k < seen.size(); ++k) seen[k] = std::max(seen[k], choice.earned[k] + rest);
       const double value = mean(weights, choice.earned) + mass * rest;
       if (value > best.value) best = {value, nullptr, choice};
     }
     const double lost = mean(weights, seen) - best.value;
     for (const StoppingTest* test : tests_) {
-      const double price = (1 - discount_) * std::max(rest_, 0.0) - test->reward;
+      const double price = (1 - discount_) * std::max(rest_, 0.0) + price_ - test->reward;
       if (most_tests == 0 || lost <= price * mass) continue;
       StoppingPlan tested = after(*test, weights, mass, most_tests - 1);
       if (tested.value > best.value + least_gain * mass) best = std::move(tested);
@@ -62,7 +62,7 @@ class OptimalStopping {
   static double mean(const StateWeights& weights, const List<double>& values) { return std::inner_product(weights.begin(), weights.end(), values.begin(), 0.0); }
 
   StoppingPlan after(const StoppingTest& test, const StateWeights& weights, double mass, int most_tests) {
-    StoppingPlan all{test.reward * mass, &test, {List<double>(weights.size(), test.reward), List<double>(weights.size(), 1.0), 0, 1}};
+    StoppingPlan all{(test.reward - price_) * mass, &test, {List<double>(weights.size(), test.reward), List<double>(weights.size(), 1.0), 0, 1}};
     for (const auto& likelihoods : test.likelihoods) {
       StateWeights told = weights;
       for (std::size_t k = 0; k < told.size(); ++k) told[k] *= likelihoods[k];
@@ -83,6 +83,7 @@ class OptimalStopping {
   const List<const StoppingTest*>& tests_;
   double discount_;
   double rest_;
+  double price_;
   std::size_t plans_ = 0;
 };
 

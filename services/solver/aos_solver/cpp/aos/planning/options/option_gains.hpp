@@ -43,6 +43,7 @@ class OptionGains {
     goes_on_.assign(options.size() * states_, 0);
     changed_.assign(options.size(), std::vector<bool>(cells.size()));
     ends_.assign(options.size(), false);
+    lasts_ = std::numeric_limits<double>::infinity();
     earns_without_end_.assign(options.size(), false);
     used_.assign(options.size(), false);
     discounts_.clear();
@@ -62,6 +63,19 @@ class OptionGains {
     note_touches();
     // Where conditions are counted, an option earns by what others have done before it.
     sequels_.begin(options, states, earned_, retries_, library.clock(), library.counts() ? 0 : share_of_sequels * steps, random);
+  }
+
+  // Lets the mission be over after so many steps, whatever the robot does: what no longer fits earns nothing.
+  void end_after(double steps) { lasts_ = steps; }
+  double lasts() const { return lasts_; }
+  // What the best options earn less for having lost so many steps.
+  double lost_by(double steps, const StateWeights& weights) {
+    if (!std::isfinite(lasts_)) return 0;
+    const double whole = best(weights);
+    lasts_ -= steps;
+    const double less = whole - best(weights);
+    lasts_ += steps;
+    return std::max(less, 0.0);
   }
 
   // Lets plans count as options do, in place of those before.
@@ -191,27 +205,29 @@ class OptionGains {
     sort_stably(candidates_, [](const Candidate& one, const Candidate& other) { return one.income > other.income; });
     double sum = 0;
     double discount = 1;
+    double left = before != none ? lasts_ - lengths_[before] : lasts_;
     chosen_.clear();
     for (const Candidate& candidate : candidates_) {
-      if (ends_[candidate.option]) continue;
+      if (ends_[candidate.option] || lengths_[candidate.option] > left) continue;
       if (std::ranges::any_of(chosen_, [&](std::size_t o) { return cannot_follow(candidate.option, o); })) continue;
       chosen_.push_back(candidate.option);
       used_[candidate.option] = true;
       sum += discount * candidate.earned;
       discount *= discounts_[candidate.option];
+      left -= lengths_[candidate.option];
     }
-    return sum + discount * best_end();
+    return sum + discount * best_end(left);
   }
 
   // What is earned by options that may end the mission, one after the other while it goes on.
-  double best_end() const {
+  double best_end(double left) const {
     double sum = 0;
     double discount = 1;
     for (int i = 0; i < max_ends; ++i) {
       std::size_t best = none;
       double most = 0;
       for (const Candidate& candidate : candidates_) {
-        if (!ends_[candidate.option]) continue;
+        if (!ends_[candidate.option] || lengths_[candidate.option] > left) continue;
         const double earned = i == 0 ? candidate.earned : earned_by(candidate.option);
         if (earned <= most) continue;
         most = earned;
@@ -222,6 +238,7 @@ class OptionGains {
       chosen_.push_back(best);
       sum += discount * most;
       discount *= discounts_[best];
+      left -= lengths_[best];
       for (Weighted& weighted : support_) weighted.weight *= goes_on_[best * states_ + weighted.state];
     }
     return sum;
@@ -250,6 +267,7 @@ class OptionGains {
   List<Option> ways_;  // the plans come last
   List<TestPlan> plans_;
   std::size_t states_ = 0;
+  double lasts_ = std::numeric_limits<double>::infinity();  // steps
   const RunningDown<Model>* retries_ = nullptr;  // actions that change nothing else are taken again
   List<double> earned_;   // [option * states + state]
   List<double> goes_on_;  // [option * states + state]

@@ -14,6 +14,7 @@
 #include "aos/base/stable_order.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/options/deadline.hpp"
 #include "aos/planning/options/option_detours.hpp"
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/option_library.hpp"
@@ -61,6 +62,7 @@ class OptionPolicy {
     if (found < enough_found && library_.count()) found = library_.extend(belief_, left, random);
     clock_.end_at(of_gains);
     gains_.measure(library_, belief_.states(), changes_, left, random);
+    if (switches::deadlines) gains_.end_after(steps_to_deadline(belief_, library_.running_down(), random));
     taken_ = of_options * affordable_ - left;
     std::string obstacle = found < (switches::enough_ways ? enough_found : 1e-9) ? "no way to a reward is found from most states" : "";
     if (!is_prepared_ && obstacle.empty()) obstacle_ = obstacle = obstacle_of_model(random);

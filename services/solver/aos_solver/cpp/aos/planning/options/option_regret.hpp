@@ -32,7 +32,7 @@ class OptionRegret {
     List<double> avoided{};  // see OptionCandidate
   };
 
-  OptionRegret(const SampledBelief<Model>& belief, const OptionGains<Model>& gains) : belief_(belief), gains_(gains) {}
+  OptionRegret(const SampledBelief<Model>& belief, OptionGains<Model>& gains) : belief_(belief), gains_(gains) {}
 
   // Takes the belief and the gains as they are now.
   void begin() {
@@ -65,6 +65,9 @@ class OptionRegret {
   double value_seen() const { return value_seen_; }
   double value_seen(const StateWeights& weights) const { return std::inner_product(weights.begin(), weights.end(), seen_.begin(), 0.0); }
   double now() const { return regret_; }
+  // The steps until a deadline, and what is earned less for having lost some of them.
+  double lasts() const { return gains_.lasts(); }
+  double lost_by(double steps) const { return gains_.lost_by(steps, belief_.weights()); }
   // The standard error of `value_seen`, since few states are drawn.
   double error() const {
     double squares = 0;
@@ -114,7 +117,7 @@ class OptionRegret {
     return of_gain * (gains_.size() * belief_.size());
   }
   const SampledBelief<Model>& belief_;
-  const OptionGains<Model>& gains_;
+  OptionGains<Model>& gains_;
   List<std::size_t> likely_;
   List<double> seen_;  // what the states are worth if they are seen
   List<std::size_t> only_ways_;

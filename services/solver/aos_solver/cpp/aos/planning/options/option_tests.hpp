@@ -100,7 +100,7 @@ class OptionTests {
   void add_to(List<OptionCandidate>& candidates, double& steps, Sampler& random) {
     const double price = twins_.are_known() ? price_of_nat(regret_.value_seen(), true) : std::numeric_limits<double>::infinity();
     const List<Test> tests = most_telling();
-    for (int repeats = 1; repeats <= most_repeats; repeats *= 2) {
+    for (int repeats = 1; repeats <= most_repeats && (repeats == 1 || repeats < regret_.lasts()); repeats *= 2) {
       for (const Test& test : tests) {
         if (repeats > 1 && (steps <= 0 || clock_.is_over())) continue;
         if (twins_.are_known()) regret_.set_price(test.is_priced ? price : std::numeric_limits<double>::infinity(), true);
@@ -130,7 +130,8 @@ class OptionTests {
     const auto told = regret_.after(observation, repeats, belief_.weights(), steps, random, [&](std::size_t k, StateWeights& weights) {
       for (int i = 0; i < repeats; ++i) observe(reports, reports[k].drawn(random), weights);
     });
-    candidates.push_back({test.action, paid.sum + paid.discount * (regret_.value_seen() - told.regret), paid.discount, "what can be observed",
+    const double later = repeats < regret_.lasts() ? regret_.value_seen() - told.regret - regret_.lost_by(repeats) : 0;
+    candidates.push_back({test.action, paid.sum + paid.discount * later, paid.discount, "what can be observed",
                           told.avoided, List<int>(static_cast<std::size_t>(repeats), test.action), regret_.now() - told.regret});
   }
 

@@ -37,6 +37,8 @@ class TestPlans {
   static constexpr std::size_t most_plans = 300;  // after what has been reported
   static constexpr double of_information = 0.5;   // that a test of a choice tells of it
   static constexpr double of_product = 0.0005;    // steps
+  static constexpr double steps_of_price = 4;     // before a deadline that are lost, to tell what one of them is worth
+  static constexpr double of_price = 0.8;         // so that the plan that sets the price keeps a gain
   static constexpr int draws = 6;                 // of reports that are too many to list
 
   // Where the same actions lead all options that end there with one more.
@@ -178,7 +180,7 @@ class TestPlans {
     bool is_tested = false;
     for_each_choice(place, [&](const Options& options) {
       const auto [value, test, as] = stopped(place, options, 0, steps);
-      if (as.steps <= 0) return;
+      if (as.steps <= 0 || trip.as.steps + as.steps > gains_.lasts()) return;
       is_tested = is_tested || test != nullptr;
       trip.options.insert(trip.options.end(), options.begin(), options.end());
       for (std::size_t k = 0; k < belief_.size(); ++k) {
@@ -207,7 +209,12 @@ class TestPlans {
     for (const StoppingTest* test : tests) responses += test->likelihoods.size();
     int most_tests = 1;
     for (std::size_t all = responses * responses; responses > 1 && all <= most_plans; all *= responses) ++most_tests;
-    OptimalStopping stopping{choices, tests, Model::discount, rest};
+    double shortest = gains_.lasts();
+    for (const StoppingChoice& choice : choices) shortest = std::min(shortest, choice.steps);
+    const double fit = gains_.lasts() - static_cast<double>(place.prefix.size()) - shortest;
+    most_tests = static_cast<int>(std::clamp<double>(fit, 0, most_tests));
+    const double some = std::min(steps_of_price, gains_.lasts());
+    OptimalStopping stopping{choices, tests, Model::discount, rest, of_price * gains_.lost_by(some, belief_.weights()) / some};
     StoppingPlan plan = stopping.plan(belief_.weights(), most_tests);
     steps -= of_product * static_cast<double>(stopping.plans() * belief_.size() * (choices.size() + tests.size()));
     return plan;

@@ -16,7 +16,8 @@ class RunningDown {
   // Finds it by random walks from the belief.
   void find(const Belief<Model>& belief, Sampler& random) {
     cells_.prepare(belief, random);
-    const List<PlacedNumber> numbers = numbers_of(belief.particles().front().state);
+    first_ = belief.particles().front().state;
+    const List<PlacedNumber> numbers = numbers_of(*first_);
     List<Trend> of_cells(cells_.size()), of_numbers(numbers.size());
     List<std::uint64_t> cells_before(cells_.size());
     cell_.resize(cells_.size());
@@ -34,6 +35,13 @@ class RunningDown {
     for (std::size_t n = 0; n < numbers.size(); ++n) {
       if (!of_numbers[n].only_runs(taken)) continue;
       std::fill_n(lasts_.begin() + numbers[n].offset, numbers[n].leaf.size, false);
+    }
+  }
+
+  // Lets what runs down be what it was at first.
+  void set_back(State& state) const {
+    for (std::size_t i = 0; i < lasts_.size(); ++i) {
+      if (!lasts_[i]) Model::bytes_of(state)[i] = Model::bytes_of(*first_)[i];
     }
   }
 
@@ -86,6 +94,7 @@ class RunningDown {
     return numbers;
   }
 
+  std::optional<State> first_;
   LeafCells<Model> cells_;
   List<std::uint64_t> cell_;  // of the state that is looked at
   std::vector<bool> runs_;           // by cell
