@@ -128,6 +128,10 @@ def look_in_vain(call):
 async def turn(angle):
     return {}
 
+def sweep(call):
+    yield 1
+
+
 def beep():
     return {}
 
@@ -351,6 +355,7 @@ async def test_a_shell_script_is_a_skill_by_the_function_of_the_page(robot: Robo
         ("drive", "/skill is not bound to a function. Write it as /skill: {python: my_robot.py:function}"),
         ("robot.py:time", "which cannot be called"),
         ("robot.py:beep", "takes no arguments. A function gets the call first"),
+        ("robot.py:sweep", "which has a `yield`. A call would run nothing of it"),
         (
             "script.py:go",
             "script.py, which cannot be loaded: SystemExit: 3. What it does as a program stands",

@@ -1,7 +1,7 @@
 """The result of a call, from what an adapter has answered."""
 
 from collections.abc import Mapping
-from reprlib import repr as shown
+from reprlib import Repr
 from typing import Any
 
 from aos_protocol.errors import SkillError
@@ -11,6 +11,11 @@ from aos_runtime.adapters.adapter import Call, Observed
 from aos_runtime.adapters.expressions import translated
 from aos_runtime.adapters.sendable import sendable
 from aos_runtime.adapters.settings import Binding
+
+_shortened = Repr()
+_shortened.maxother = _shortened.maxstring = 80
+shown = _shortened.repr
+"""The text of a value for a message, which may be as large as it likes."""
 
 
 def result_of(

@@ -127,6 +127,9 @@ class PythonAdapter:
             ) from error
         if not callable(found):
             raise DeployError(f"{path} is bound to {target}, which cannot be called")
+        if inspect.isgeneratorfunction(found) or inspect.isasyncgenfunction(found):
+            hint = "A call would run nothing of it: tell progress by `call.progress`, and return the result"
+            raise DeployError(f"{path} is bound to {target}, which has a `yield`", hint=hint)
         if not _takes_call(found):
             short = name.rpartition(".")[2]
             hint = f"A function gets the call first, and then the call's fields: def {short}(call)"
