@@ -1,9 +1,8 @@
-"""Writes what follows from the sources: errors.md, tables of other pages.
+"""Writes what follows from the sources: errors.md, the notebook, tables of other pages.
 
 `python docs/write_reference.py` writes them, `--check` only says whether they are current (exit code 1 if
-not), and `--notebook` prints the code of python.md as a notebook. In http-api.md, languages.md, limits.md and
-protocol.md the text between `<!-- generated: NAME -->` and `<!-- end -->` is replaced; the rest is written by
-hand.
+not). In http-api.md, languages.md, limits.md and protocol.md the text between `<!-- generated: NAME -->` and
+`<!-- end -->` is replaced; the rest is written by hand.
 """
 
 import json
@@ -182,14 +181,12 @@ def pages() -> dict[Path, str]:
     generated_in_part = [DOCS / name for name in ("http-api.md", "languages.md", "limits.md", "protocol.md")]
     return {
         DOCS / "errors.md": errors_page(),
+        DOCS / "notebook.ipynb": notebook((DOCS / "python.md").read_text(encoding="utf-8")),
         **{page: with_generated_parts(page.read_text(encoding="utf-8")) for page in generated_in_part},
     }
 
 
 def main() -> int:
-    if "--notebook" in sys.argv[1:]:
-        sys.stdout.write(notebook((DOCS / "python.md").read_text(encoding="utf-8")))
-        return 0
     stale = [
         (page, text)
         for page, text in pages().items()
