@@ -173,6 +173,16 @@ CODE = {
         "for (auto&& box : state.ParametersObjects) __reward += box->weight; state__.stock = state.stock;",
         30 + 1 + 2 + 3 + 6,
     ),
+    "views": (
+        "for (int key : std::ranges::views::keys(state.stock)) __reward += key;"
+        "for (int& value : state__.stock | std::views::values) value *= 2;"
+        "auto node = state__.stock.extract(4); node.key() = 2; state__.stock.insert(std::move(node));"
+        "auto [at, is_new] = state__.stock.insert_or_assign(1, 7); __reward += 10 * is_new + at->second;"
+        'vector<string> texts{"a", "bc"}; state__.note = "d"; state__.note.swap(texts[1]);'
+        'std::erase(texts, "a"); __reward += texts.size() + 100 * (state__.note == "bc");'
+        "__reward += state__.stock.at(2); state__.stock = state.stock;",
+        5 + 7 + 1 + 100 + 12,
+    ),
     "method": (
         "struct Half { int n; Half(int m) : n(m / 2) {} }; static int const four = 4; Half half(amount);"
         "int most(std::max(amount, half.n)); __reward = half.n * four + most;",

@@ -308,6 +308,11 @@ async def test_a_list_of_other_parameters_is_told_with_those_of_the_skill(values
             "`std::pair<int, int>` has no member named `fist`",
             "no member named `fist` in `std::pair<int, int>`",
         ),
+        (
+            "struct S { int n; }; S s; s->n = 1;",
+            "base operand of `->` has non-pointer type `S`",
+            "member reference type `S` is not a pointer",
+        ),
         ("int n = 1; state__.total = n[0];", *["this is one value, and has no elements"] * 2),
         ("Bool ok = true;\nstate__.total = ok;", "`Bool` was not declared", "unknown type name `Bool`"),
         (

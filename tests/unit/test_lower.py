@@ -100,6 +100,8 @@ def test_the_state_digest_is_of_the_declared_state():
         ("state__.total = rand();", "rand"),
         ("static int calls = 0; state__.total = ++calls;", "static"),
         ("std::mt19937 own; state__.total = own();", "mt19937"),
+        ("state__.total = std::bernoulli_distribution(0.9)(state__.count);", "bernoulli_distribution"),
+        ("std::poisson_distribution<> far(2); state__.total = 1;", "poisson_distribution"),
         ("auto now = std::chrono::steady_clock::now(); state__.total = 1;", "steady_clock"),
     ],
 )
@@ -108,6 +110,14 @@ def test_code_that_cannot_be_repeated_exactly_is_refused(act, word):
     assert program is None
     assert diagnostics[0].code == "AOS124"
     assert str(diagnostics[0].span) == f"act.sd:3:{act.index(word) + 1}"
+
+
+def test_a_distribution_of_the_standard_library_is_told_with_the_draw_that_aos_has():
+    code = "std::minstd_rand own(1); std::normal_distribution<> far(2, 1); state__.total = far(own);"
+    assert [finding.hint for finding in lower(project_of(code))[1]] == [
+        "Leave it out: AOS.Bernoulli and its like need no generator",
+        "Write `AOS.SampleNormal(mean, deviation)`",
+    ]
 
 
 def test_a_constant_static_a_variable_called_time_and_a_duration_are_fine():

@@ -55,6 +55,36 @@ def test_a_vector_grows_through_a_reference_too():
     assert (capacities.capacity("table", 0), capacities.capacity("table", 1)) == (1, GROWING_CAPACITY)
 
 
+@pytest.mark.parametrize(
+    "code",
+    [
+        "copy(a.begin(), a.end(), std::back_inserter(state__.table[0]));",
+        "auto add = [](vector<int>& row) { row.push_back(1); }; add(state__.table[0]);",
+        "auto at = state__.table.begin(); at->second.push_back(1);",
+        "for (auto& [key, row] : state__.table) row.push_back(key);",
+        "for (auto& [key, row] : state__.table) row = {1, 2, 3};",
+        "auto* row = &state__.table[0]; row->resize(n);",
+        "state__.table.back().push_back(1);",
+        "a = std::exchange(state__.table[0], {1, 2, 3});",
+    ],
+)
+def test_a_vector_grows_where_it_is_passed_on_or_pointed_to(code):
+    capacities = capacities_of("state.table = {{1, 2}}; state.path = {1};", code)
+    assert (capacities.capacity("table", 1), capacities.capacity("path")) == (GROWING_CAPACITY, 1)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "vector<int> mine; mine.push_back(state.table[0][0]);",
+        "for (auto& row : state__.table) row[0] = 1;",
+        "for (auto& [key, value] : state__.table) value = 3;",
+    ],
+)
+def test_a_vector_that_is_only_read_or_set_keeps_its_length(code):
+    assert capacities_of("state.table = {{1, 2}};", code).capacity("table", 1) == 2
+
+
 def test_loop_bounds_tell_how_far_a_vector_grows():
     code = "for (int i = 0; i < 30; i++) for (int j = 0; j < 40; j++) state.cells.push_back(0);"
     assert capacities_of(code).capacity("cells") == 1200

@@ -9,6 +9,7 @@ from aos_language.reading.sdl_words import GRAMMARS
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.spelling import did_you_mean
 from aos_solver.building.map_messages import told_of_a_map
+from aos_solver.building.message_hints import NAMES, hint_for
 from aos_solver.building.type_words import in_words
 from aos_solver.emission.emit import EmittedModel
 
@@ -25,9 +26,10 @@ _UNKNOWN = re.compile(
 )
 _OF_PYTHON = {"True": "true", "False": "false", "None": "nullptr", "elif": "else if", "pass": ";"}
 _OF_PYTHON |= {"TRUE": "true", "FALSE": "false", "null": "nullptr"}
+_OF_PYTHON |= NAMES
 _OF_PYTHON |= {"AND": "&&", "OR": "||", "in": ":", "is": "=="}
 _A_TEXT = re.compile(
-    r"`const char ?(?:\*|\[\d+\])`.*`(?!const char)|`(?!const char)\w+`.*`const char ?(?:\*|\[\d+\])`"
+    r"`const char ?(?:\*|\[\d+\])`.*`(?!const char)|`(?!const char)[\w ]+`.*`const char ?(?:\*|\[\d+\])`"
 )
 """A text meets another type: a number, an enum's value, a response."""
 _WITHIN = re.compile(
@@ -252,4 +254,4 @@ def _plain(text: str) -> tuple[str, str]:
     message, separator, suggestion = text.partition("; ")
     if separator and suggestion.startswith("did you mean"):
         return message, suggestion[0].upper() + suggestion[1:]
-    return text, ""
+    return text, hint_for(text)

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import msgspec
 
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Access, Call, Cpp, Mention, strip_comments
 
 GROWING_CAPACITY = 64
@@ -17,8 +18,10 @@ REPORTED_CAPACITY = 1024
 
 _MAX_CAPACITY = 16384
 _MAX_NESTING = 4
-_GROWING = frozenset({"emplace", "emplace_back", "insert", "push_back"})
+_GROWING = frozenset({"emplace", "emplace_back", "insert", "merge", "push_back"})
 _SIZING = frozenset({"assign", "resize"})
+_FILLING = frozenset({"back_inserter", "exchange", "front_inserter", "inserter", "tie"})
+"""Functions of the standard library that make what they are given longer, or whose result does."""
 _NUMBER = r"\s*(\d+(?:\s*\*\s*\d+)*)\s*"  # or a product of numbers
 _LOOP_BOUND = re.compile(rf"\bfor\s*\([^;{{}}]*;[^;{{}}]*<=?{_NUMBER};")
 _CONSTRUCTED = re.compile(rf"(?:std::)?vector\s*<[^(){{}};]*>\s*\({_NUMBER}[,)]")
@@ -28,6 +31,7 @@ _LOOP_COLON = re.compile(r"\s*:\s*")
 _IN_PLACE = re.compile(r"\s*([:,]|\.\s*swap\s*\()\s*(&?)\s*")
 _BEFORE_FIRST = re.compile(r"(?:(swap\s*\(\s*)|(&\s*))\Z")
 _STATEMENT = re.compile(r"[^;{}]*\Z")
+_LONGER = re.compile(r"=\s*(?:(?:std::)?vector\s*<|\{)")
 _LISTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*(?=\{)")
 
 
@@ -83,7 +87,10 @@ class Capacities:
             for one, other in _in_place_of_each_other(cpp, code):
                 self._join(_key(one.path), _key(other.path))
             filled = [argument for call in cpp.calls if self._fills(call) for argument in call.arguments]
+            is_unclear = _fills_what_is_unclear(cpp, code, frozenset(aliases))
             for mention in cpp.mentions:
+                if is_unclear and mention.path[0] in STATES:
+                    self._grow_all(_key(mention.path), loops)
                 is_filled = any(argument.start <= mention.extent.start < argument.end for argument in filled)
                 for start in aliases.get(mention.path[0], [mention.path[:1]]):
                     path = (*start, *mention.path[1:])
@@ -103,6 +110,8 @@ class Capacities:
         return self._constant.sub(lambda name: self._numbers[name[0]], code) if self._constant else code
 
     def _fills(self, call: Call) -> bool:
+        if call.name[-1:] and call.name[-1] in _FILLING:
+            return True
         return len(call.name) == 1 and call.name[0] in self._filling
 
     def _take_mention(self, mention: Mention, code: str, loops: int) -> None:
@@ -135,6 +144,11 @@ class Capacities:
     def _know(self, key: tuple[str, int], size: int) -> None:
         self._known[key] = max(self._known.get(key, 1), size)
 
+    def _grow_all(self, key: tuple[str, int], loops: int) -> None:
+        """Notes that a vector or what it holds may grow."""
+        for level in range(key[1], _MAX_NESTING):
+            self._grow((key[0], level), loops)
+
     def _grow(self, key: tuple[str, int], loops: int) -> None:
         self._grows[key] = max(self._grows.get(key, GROWING_CAPACITY), loops)
 
@@ -162,6 +176,24 @@ def _aliases(cpp: Cpp) -> Iterator[tuple[str, tuple[str, ...]]]:
                 yield declaration.name, mention.path
             elif loop is not None and at == loop.end():
                 yield declaration.name, (*mention.path, "[]")
+
+
+def _fills_what_is_unclear(cpp: Cpp, code: str, known: frozenset[str]) -> bool:
+    """Returns whether code makes something longer through a reference, a pointer or a call's result.
+
+    `known` are names whose places in the state are told.
+    """
+    types = {declaration.name: declaration.type for declaration in cpp.declarations}
+    for mention in cpp.mentions:
+        name, *rest = mention.path
+        kind = types.get(name, "")
+        is_iterator = kind == "auto" and rest[:1] in (["first"], ["second"])
+        if name in known or not (kind.endswith(("&", "*")) or is_iterator):
+            continue
+        is_set = mention.access is Access.WRITE and _LONGER.match(code[mention.extent.end :].lstrip())
+        if mention.method in _GROWING | _SIZING or is_set:
+            return True
+    return any(call.name in {(method,) for method in _GROWING} for call in cpp.calls)
 
 
 def _in_place_of_each_other(cpp: Cpp, code: str) -> Iterator[tuple[Mention, Mention]]:

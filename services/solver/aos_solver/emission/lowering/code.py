@@ -33,7 +33,7 @@ from aos_protocol.documents import (
     Snippet,
     TemporaryVariable,
 )
-from aos_solver.emission.lowering.cpp_library import unrepeatable_names
+from aos_solver.emission.lowering.cpp_library import instead_of_unrepeatable, unrepeatable_names
 from aos_solver.emission.lowering.types import Types
 from aos_solver.emission.program import DeclaredVariable, EnumVariable, Loop, Piece, Section, Statement
 from aos_solver.emission.rewriting.rewrite import NO_LOOPS, EnumValues, LoopsOfPiece, Rewriting, rewrite
@@ -152,10 +152,8 @@ class Pieces:
             at = re.search(rf"\b{re.escape(name)}\b", code)
             start = at.start() if at is not None else 0
             span = snippet.locate(*line_and_column(code, start))
-            hint = "Draw with AOS.Bernoulli and its like; keep what changes in the state"
-            self._findings.error(
-                "AOS124", f"`{name}` makes a step that cannot be repeated exactly", span, hint
-            )
+            message = f"`{name}` makes a step that cannot be repeated exactly"
+            self._findings.error("AOS124", message, span, instead_of_unrepeatable(name))
 
 
 class SectionLowering:

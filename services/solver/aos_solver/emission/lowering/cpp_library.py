@@ -16,6 +16,7 @@ _HEADERS = {
         "stable_partition swap_ranges unique_copy"
     ),
     "any": "any any_cast",
+    "aos/model/map_views.hpp": "keys values",
     "bit": (
         "bit_cast bit_ceil bit_floor bit_width countl_zero countr_one countr_zero has_single_bit popcount "
         "rotl rotr"
@@ -70,11 +71,26 @@ _HEADERS = {
 }
 _HEADER_OF = {name: header for header, names in _HEADERS.items() for name in names.split()}
 
-_UNREPEATABLE = frozenset({
-    "bernoulli_distribution", "clock", "clock_gettime", "default_random_engine",
-    "discrete_distribution", "drand48", "getrandom", "gettimeofday", "mt19937", "mt19937_64",
-    "normal_distribution", "rand", "rand_r", "random", "random_device", "random_shuffle", "srand",
-    "srandom", "time", "uniform_int_distribution", "uniform_real_distribution",
+_DRAWS = {
+    "bernoulli_distribution": "AOS.Bernoulli(p)",
+    "binomial_distribution": "AOS.Bernoulli(p)` in a loop, and count",
+    "discrete_distribution": "AOSUtils::SampleDiscrete(std::vector<double>{...})`, which gives an index",
+    "normal_distribution": "AOS.SampleNormal(mean, deviation)",
+    "uniform_int_distribution": "low + AOSUtils::SampleDiscrete(std::vector<double>(n, 1.0 / n))",
+    "uniform_real_distribution": "AOS.SampleUniform(low, high)",
+}
+"""Draws of AOS in the place of distributions; the hint closes the quote where it is open."""
+_GENERATORS = frozenset({
+    "default_random_engine", "knuth_b", "minstd_rand", "minstd_rand0", "mt19937", "mt19937_64",
+    "random_device", "ranlux24", "ranlux24_base", "ranlux48", "ranlux48_base",
+})  # fmt: skip
+_UNREPEATABLE = _GENERATORS | frozenset(_DRAWS) | frozenset({
+    "cauchy_distribution", "chi_squared_distribution", "clock", "clock_gettime", "drand48",
+    "exponential_distribution", "extreme_value_distribution", "fisher_f_distribution", "gamma_distribution",
+    "geometric_distribution", "getrandom", "gettimeofday", "lognormal_distribution",
+    "negative_binomial_distribution", "piecewise_constant_distribution", "piecewise_linear_distribution",
+    "poisson_distribution", "rand", "rand_r", "random", "random_shuffle", "srand", "srandom",
+    "student_t_distribution", "time", "weibull_distribution",
 })  # fmt: skip
 _CLOCK = re.compile(r"(?<=chrono::)\w+_clock\b|\b(?:steady|system|high_resolution)_clock(?=::)")
 _CHANGING_STATIC = re.compile(
@@ -94,3 +110,12 @@ def unrepeatable_names(called: frozenset[str], code: str) -> list[str]:
     found = sorted(called & _UNREPEATABLE)
     found += sorted(set(_CLOCK.findall(code)))
     return [*found, *(match[0] for match in _CHANGING_STATIC.finditer(code))]
+
+
+def instead_of_unrepeatable(name: str) -> str:
+    """Returns what to write in the place of a name that `unrepeatable_names` gives, as a hint."""
+    if name in _GENERATORS:
+        return "Leave it out: AOS.Bernoulli and its like need no generator"
+    if (draw := _DRAWS.get(name)) is not None:
+        return f"Write `{draw}" + ("`" if draw.count("`") == 0 else "")
+    return "Draw with AOS.Bernoulli and its like; keep what changes in the state"

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 
 from aos_language.cpp.keywords import DRAW_SOURCES, STATES
-from aos_language.cpp.snippets import Access, Call, Cpp, Declaration, DeclarationKind
+from aos_language.cpp.snippets import Access, Call, Cpp, Declaration, DeclarationKind, blanked, strip_comments
 
 _CONTAINER_REFERENCE = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map|set|pair)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"
@@ -26,6 +26,7 @@ _BIT = re.compile(r"((?:std\s*::\s*)?vector\s*<\s*bool\s*>\s*::\s*reference)\s+$
 _VECTOR = re.compile(r"(?:^|[;{}])\s*((const\s+)?(?:std\s*::\s*)?vector\s*<[^;(){}]*>\s*)$")
 _WEIGHTS = re.compile(r"\s*(?:std\s*::\s*)?vector\s*<\s*double\s*>\s*(?=\{)")
 _READING_METHODS = frozenset({"at", "back", "cbegin", "cend", "empty", "front", "size"})
+_MAP_VIEW = re.compile(r"\b(?:std\s*::\s*)?(?:ranges\s*::\s*)?views\s*::\s*(keys|values)\b")
 _FLIPPED = re.compile(r"(?<=\])\s*\.\s*flip\s*\(\s*\)\Z")
 _LITERAL = re.compile(r"[-+\s{},]|\d[\w.]*|\.\d\w*")
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -44,17 +45,20 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
     - `state__.bits[1].flip()` becomes `aos::flip(state__.bits[1])`
     - `std::swap`, `std::erase`, `std::erase_if` and `std::getline` lose their `std::`: those of state
       variables are not there
+    - `std::views::keys` becomes `aos::keys`, which also takes a map of the state
     - a vector of constants that is only read becomes `static const`
     - `AOS.SampleDiscrete(vector<double>{0.5, 0.5})` becomes `AOS.SampleDiscrete({0.5, 0.5})`
     """
     own = {declaration.name for declaration in cpp.declarations}
+    for view in _MAP_VIEW.finditer(blanked(strip_comments(cpp.code), cpp.literals)):
+        yield *view.span(), f"aos::{view[1]}"
     for call in cpp.calls:
         if _is_draw(call):
             weights = _WEIGHTS.match(cpp.code, call.arguments[-1].start)
             if weights is not None and _is_constant(cpp.code[weights.end() : call.arguments[-1].end], values):
                 yield weights.start(), weights.end(), ""
         prefix = _STD.match(cpp.code, call.extent.start)
-        if prefix is not None and call.name[-1] in _OF_STATE - own:
+        if prefix is not None and {*call.name[-1:]} & _OF_STATE - own:
             yield prefix.start(), prefix.end(), ""
         if (flipped := _FLIPPED.search(cpp.code, call.extent.start, call.extent.end)) is not None:
             yield call.extent.start, call.extent.start, "aos::flip("
@@ -144,6 +148,8 @@ def _is_constant_table(cpp: Cpp, declaration: Declaration, values: frozenset[str
     assert initial is not None
     if not _is_constant(cpp.code[initial.start : initial.end], values):
         return False
+    if cpp.code[initial.end :].lstrip()[:1] == ",":
+        return False  # Another variable is declared beside it.
     name = declaration.name
     if sum(other.name == name for other in cpp.declarations) != 1:
         return False

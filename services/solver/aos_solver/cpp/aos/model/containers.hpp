@@ -214,7 +214,7 @@ std::size_t erase_if(Vector<T, Capacity>& values, Predicate is_erased) {
 }
 template <class T, std::size_t Capacity, class Value>
 std::size_t erase(Vector<T, Capacity>& values, const Value& value) {
-  const Value erased = value;  // it may be an element
+  const std::decay_t<const Value&> erased(value);  // it may be an element
   return erase_if(values, [&](const T& other) { return other == erased; });
 }
 // A part of the state with what code holds in a standard type.

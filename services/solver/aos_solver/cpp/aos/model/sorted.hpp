@@ -28,6 +28,19 @@ struct Pair {
   auto operator<=>(const Pair&) const = default;
 };
 
+// An element that was taken out of a map or a set, to be put back with another key.
+template <class Element>
+struct Node {
+  Element element{};
+  bool is_held = false;
+
+  auto& key() { return element.first; }
+  auto& mapped() { return element.second; }
+  Element& value() { return element; }
+  bool empty() const { return !is_held; }
+  explicit operator bool() const { return is_held; }
+};
+
 // A Vector in the order of its elements' keys, each of which is there once: those of pairs in a map, else the elements
 // themselves. It converts from and to the standard containers. More keys than the capacity are a ModelFault.
 template <class Store, class Key>
@@ -76,6 +89,9 @@ class Sorted : public Store {
     if (at != end() && key_in(*at) == key_in(element)) return {at, false};
     return {Store::insert(at, element), true};
   }
+  std::pair<iterator, bool> insert(const Node<T>& node) {
+    return node.is_held ? insert(node.element) : std::pair{end(), false};
+  }
   iterator insert(const T* /*hint*/, const T& element) { return insert(element).first; }
   template <class Iterator>
   void insert(Iterator first, Iterator last) {
@@ -95,6 +111,15 @@ class Sorted : public Store {
     if (at == end()) return 0;
     Store::erase(at);
     return 1;
+  }
+  Node<T> extract(iterator at) {
+    const Node<T> node{*at, true};
+    Store::erase(at);
+    return node;
+  }
+  Node<T> extract(const Key& key) {
+    const iterator at = find(key);
+    return at == end() ? Node<T>{} : extract(at);
   }
 
   friend bool operator==(const Sorted& left, const Sorted& right) {
@@ -143,8 +168,9 @@ class Map : public Sorted<Store, std::remove_cvref_t<decltype(Store::value_type:
     return this->insert({key, Value(std::forward<decltype(arguments)>(arguments)...)});
   }
   auto insert_or_assign(const Key& key, const auto& value) {
+    const bool is_new = !this->contains(key);
     (*this)[key] = value;
-    return this->find(key);
+    return std::pair{this->find(key), is_new};
   }
 
  private:

@@ -36,6 +36,12 @@ class Text : public Elements<Text, char> {
     set_length(text.size());
   }
   Text& append(std::string_view more) { return *this += more; }
+  template <class Other>
+  void swap(Other& other) {
+    const std::string mine(*this);
+    assign(other);
+    other = mine;
+  }
   void pop_back() { set_length(checked(length_ - std::size_t{1})); }
   void resize(std::size_t size, char filling = '\0') {
     changed([&](std::string& text) { text.resize(size, filling); });
