@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
-import jsonschema
+import jsonschema_rs
 import msgspec
 import pytest
 from decision_records import decision_record
@@ -128,7 +128,7 @@ def test_a_run_is_read_back_from_its_mcap_file(run: Path, tmp_path):
     messages = messages_of(target)
     by_topic: dict[str, list[Any]] = {}
     for topic, schema, content, _ in messages:
-        jsonschema.validate(content, schema)
+        jsonschema_rs.validate(schema, content)
         assert schema["type"] == "object"
         assert "$ref" not in json.dumps(schema)
         by_topic.setdefault(topic, []).append(content)
