@@ -83,11 +83,14 @@ __moduleResponse = seems_clogged ? clogged : clear;"""
     return writer.files
 
 
-async def test_an_order_counts_by_what_comes_of_it_later():
+async def test_an_order_counts_by_what_comes_of_it_later_and_rollouts_decide_where_they_tell_more():
     """Over 50 steps rests return -65 on average; without rests after a way this mission returns -69.6."""
-    async with engine_of_text(_pumps()) as engine:
+    built = await built_text(_pumps())
+    async with engine_of(built) as engine, engine_of(built) as other:
         run = await simulated(engine, _SIMULATIONS, seed=2, goal_probability=1, step_limit=50)
+        plan = await other.plan(simulations=_SIMULATIONS, seed=3, planner="auto")
     assert run.discounted_return > -55
+    assert (plan.planner, "more by rollouts" in plan.why) == ("pomcp", True)
 
 
 def _filters() -> dict[str, str]:
