@@ -242,3 +242,31 @@ def test_a_status_that_no_skill_has_is_told(rule, told):
     rules = f"response_rule: {rule}\nresponse: walked\nresponse_rule: True"
     texts = finding_texts(mapping=MAPPING.replace("response_rule: True", rules))
     assert [text[: len(told)] for text in texts if "AOS149" in text] == [told] * bool(told)
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("text = __input.name\ntext.strip()\ntons = float(text)", "nothing takes what `strip` gives"),
+        ("round(__input.a, 2)\ntons = __input.a", "nothing takes what `round` gives"),
+        ("tons = float('{__input.a}')", "`{__input.a}` is text here, and no value"),
+        ("tons = __input.a ^ 2", "`^` is no power in Python"),
+    ],
+)
+def test_python_that_does_other_than_it_seems_to_say_is_told(code, told):
+    texts = [each.message for each in found(mapping=f"{MAPPING.replace('True', 'tons')}{TON}{code}\n")]
+    assert [text[: len(told)] for text in texts] == [told]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "all = list(map(str.strip, __input.all))\nall.remove('a')\nall.sort()\ntons = float(all[0])",
+        "text = 'about {tons}'\ntext = text.format(tons=__input.a)\ntons = len(text)",
+        "try:\n    float(__input.a)\n    tons = 1.0\nexcept ValueError:\n    tons = (__input.b & 4) == 4",
+        "# Takes {tons}.\ntons = __input.a ^ 4",
+        "import os\nos.replace('a', 'b')\ntons = float('{a}'.replace('{a}', __input.name))",
+    ],
+)
+def test_python_that_means_what_it_says_is_left_alone(code):
+    assert found(mapping=f"{MAPPING.replace('True', 'tons')}{TON}{code}\n") == ()

@@ -100,12 +100,16 @@ class Declaration(msgspec.Struct, frozen=True):
 
 
 class OddPart(msgspec.Struct, frozen=True):
-    """Code that does other than it seems to say, as `1/2`, where all names `of_enums` are values of enums."""
+    """Code that does other than it seems to say, as `1/2`, where all names `of_enums` are values of enums.
+
+    `local` is a variable of the code that no other snippet of its section may use for that.
+    """
 
     extent: Extent
     message: str
     hint: str
     of_enums: tuple[str, ...]
+    local: str = ""
 
 
 class Cpp(msgspec.Struct, frozen=True):

@@ -6,9 +6,10 @@ from typing import NamedTuple
 
 import tree_sitter
 
-from aos_language.cpp.nodes import below, field_of, field_text, operator_of, text_of
+from aos_language.cpp.nodes import below, child_of, field_of, field_text, operator_of, text_of
 
 _WHOLE = re.compile(r"0|[1-9][0-9]*")
+_DECIMAL = re.compile(r"0?\.\d*[1-9]\d*")
 _ORDERS = ({"<", "<="}, {">", ">="})
 _COMPARING = frozenset({"==", "!=", "<", "<=", ">", ">="})
 _FIXED = ("char_literal", "identifier", "number_literal", "string_literal")
@@ -16,6 +17,8 @@ _GIVING = re.compile(
     r"AOS\w*(\.|::)(Bernoulli|Sample\w+)|std::(clamp|max|min|remove|remove_if|unique)|.*\.empty"
 )
 _OF_STATE = re.compile(r"\*?state_*\.")
+_PART_OF_STATE = re.compile(r"\*?state_*\.\w+(?:(?:\.|->)\w+|\[[\w.]+\])*")
+_STEADY = re.compile(r"[\w.\[\]]+")
 _LEAVING = ("break_statement", "continue_statement", "goto_statement", "return_statement", "throw_statement")
 
 
@@ -26,6 +29,7 @@ class Odd(NamedTuple):
     message: str
     hint: str
     of_enums: tuple[str, ...] = ()
+    local: str = ""
 
 
 def odd_parts(node: tree_sitter.Node) -> Iterator[Odd]:
@@ -41,14 +45,22 @@ def odd_parts(node: tree_sitter.Node) -> Iterator[Odd]:
         whole = node.named_children[0]
         if _GIVING.fullmatch(function := field_text(whole, "function")):
             yield Odd(whole, f"nothing takes what `{function}` gives", f"Write `NAME = {text_of(whole)};`")
+        elif whole.type == "assignment_expression":
+            yield from _set_oddly(whole)
+    elif node.type == "declaration":
+        yield from _copied_variable(node)
     elif node.type == "for_range_loop":
         yield from _copied(node)
     elif node.type == "if_statement" and field_of(node, "alternative") is None:
         body = field_of(node, "consequence")
         if body is not None and text_of(body) == ";":
             yield Odd(body, "this semicolon ends the `if`", "Take it out")
+    elif node.type == "else_clause" and text_of(node.children[-1]) == ";":
+        yield Odd(node.children[-1], "this semicolon ends the `else`", "Take it out")
     elif node.type == "case_statement" and getattr(node.next_named_sibling, "type", "") == node.type:
         parts = [part.type for part in below(node)]
+        if _only_breaks(node.next_named_sibling):
+            return
         if ";" in parts and "fall" not in text_of(node) and not {*_LEAVING, "ERROR"} & {*parts}:
             hint = "Write `break;` at its end, or `[[fallthrough]];` where this is meant"
             yield Odd(node.children[0], "what stands here goes on into the next `case`", hint)
@@ -66,6 +78,41 @@ def _copied(loop: tree_sitter.Node) -> Iterator[Odd]:
             yield Odd(
                 used[0], f"`{text_of(name)}` is a copy: this changes nothing", "Declare it with `auto&`"
             )
+
+
+def _copied_variable(node: tree_sitter.Node) -> Iterator[Odd]:
+    """Yields a copy of a part of the state that is only set: `auto box = state__.box; box.x = 1;`."""
+    declared = field_of(node, "declarator")
+    if declared is None or declared.type != "init_declarator" or node.parent is None:
+        return
+    name, value = text_of(child_of(declared, "declarator")), field_text(declared, "value")
+    if not name.isidentifier() or not _PART_OF_STATE.fullmatch(value):
+        return
+    used = [
+        part
+        for part in below(node.parent)
+        if part.type == "identifier" and text_of(part) == name and part.start_byte > declared.end_byte
+    ]
+    if used and all(_is_only_set(part, whole=False) for part in used):
+        hint = f"Declare it with `auto& {name} = {value}`"
+        yield Odd(used[0], f"`{name}` is a copy: this changes nothing", hint, local=name)
+
+
+def _set_oddly(setting: tree_sitter.Node) -> Iterator[Odd]:
+    """Yields what is set to itself, and `x =- 1`."""
+    left, sign, right = setting.children[0], setting.children[1], setting.children[-1]
+    name = text_of(left)
+    if text_of(sign) != "=":
+        return
+    if name == text_of(right) and _STEADY.fullmatch(name):
+        yield Odd(setting, f"`{name}` is set to itself", "Take it out, or name what it is to be")
+    elif right.start_byte == sign.end_byte and re.match(r"-\s", text_of(right)):
+        yield Odd(sign, "`=-` subtracts nothing: it sets", "To subtract, write `-=`")
+
+
+def _only_breaks(case: tree_sitter.Node | None) -> bool:
+    statements = case.named_children if case is not None else []
+    return any(part.type == "break_statement" for part in statements[:2])
 
 
 def _is_only_set(part: tree_sitter.Node, *, whole: bool) -> bool:
@@ -98,6 +145,9 @@ def _calculated(node: tree_sitter.Node) -> Iterator[Odd]:
     elif operator in "&|" and operator_of(right) in _COMPARING and right.children[0].type == "number_literal":
         hint = f"Write `({first} {operator} {text_of(right.children[0])})`"
         yield Odd(node, f"`{operator_of(right)}` binds first: this is `{first} {operator} ({second})`", hint)
+    elif operator in ("&&", "||") and (odds := [p for p in (left, right) if _DECIMAL.fullmatch(text_of(p))]):
+        text = text_of(odds[0])
+        yield Odd(odds[0], f"`{text}` is always true here", f"Write `AOS.Bernoulli({text})` for a chance")
     elif operator in ("&&", "||"):
         while operator_of(left) == operator:
             left = left.children[2]

@@ -90,7 +90,8 @@ class TreeReader:
                 Fault(FaultKind.SYNTAX, f"unexpected {text[0][:40]!r}", self.extent(node), hint)
             )
         for odd in odd_parts(node):
-            self.odd_parts.append(OddPart(self.extent(odd.place), odd.message, odd.hint, odd.of_enums))
+            extent = self.extent(odd.place)
+            self.odd_parts.append(OddPart(extent, odd.message, odd.hint, odd.of_enums, odd.local))
         handler = _HANDLERS.get(node.type)
         if handler is None:
             self._push(node.children)

@@ -4,6 +4,7 @@ Others are told, and so are slips of Python."""
 import ast
 from collections.abc import Iterator
 
+from aos_language.check.mappings.python_slips import python_slips
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.local_types import ELEMENTS, local_type
@@ -45,6 +46,9 @@ def check_value_uses(
         fields = {name: compound for name, compound in compounds.items() if name not in own}
         numbers_and_texts = known_plain | dict.fromkeys(known, "string")
         tested = {id(part) for node in nodes for part in _tested(node)}
+        for place, message, hint in python_slips(tree, kinds):
+            span = snippet.locate(place.lineno - lines_above, place.col_offset + 1)
+            findings.warning("AOS149", message, span, hint)
         for node in nodes:
             for name, message, hint in (
                 *_attribute(node, numbers_and_texts, kinds, id(node) in tested),

@@ -1,5 +1,6 @@
 """The C++ of environment and skills: does each snippet stay in its function, and mean what exists?"""
 
+from collections import Counter
 from collections.abc import Iterable
 
 import msgspec
@@ -56,14 +57,14 @@ def _check_blocks(
     """The sections of a document, and the blocks that they consist of."""
     for block in blocks:
         _check_loops(block, scope, findings)
-    around = _Around(_temporary_enums(blocks), _declared_names(pieces))
+    around = _Around(_temporary_enums(blocks), _declared_names(pieces), _names_of_several(pieces))
     for piece in pieces:
         _BlockCheck(piece, scope, findings, around).run()
 
 
 def check_block(block: Block, scope: Scope, findings: Findings) -> None:
     """A block that stands alone."""
-    _BlockCheck(block, scope, findings, _Around({}, frozenset())).run()
+    _BlockCheck(block, scope, findings, _Around({}, frozenset(), frozenset())).run()
 
 
 def _enum_sizes(cpp: Cpp) -> dict[str, int]:
@@ -91,6 +92,13 @@ def _declared_names(pieces: Iterable[Block]) -> frozenset[str]:
     return frozenset(declaration.name for piece in pieces for declaration in read_block(piece).declarations)
 
 
+def _names_of_several(pieces: Iterable[Block]) -> frozenset[str]:
+    counted = Counter(
+        name for piece in pieces for name in {use.path[0] for use in read_block(piece).mentions}
+    )
+    return frozenset(name for name, count in counted.items() if count > 1)
+
+
 def _check_loops(block: tuple[Assignment, ...], scope: Scope, findings: Findings) -> None:
     for assignment in block:
         if assignment.temporary is not None and not assignment.temporary.enum_name:
@@ -107,10 +115,12 @@ def _check_loops(block: tuple[Assignment, ...], scope: Scope, findings: Findings
 
 
 class _Around(msgspec.Struct, frozen=True):
-    """The declarations in the document's other code: enums with how many values they have, and all names."""
+    """The document's other code: its enums with how many values they have, all names that it declares, and
+    those that several of its snippets use."""
 
     enum_sizes: dict[str, int]
     declared: frozenset[str]
+    of_several: frozenset[str]
 
 
 class _BlockCheck:
@@ -124,6 +134,7 @@ class _BlockCheck:
         self._enum_sizes = {name: len(enum.values) for name, enum in scope.enums.items()}
         self._enum_sizes |= _enum_sizes(scope.shared.cpp) | around.enum_sizes
         self._declared = around.declared | scope.shared.all_names
+        self._of_several = around.of_several
         self._locals = {declaration.name: declaration.type for declaration in self._cpp.declarations}
         self._mentions = MentionCheck(block, self._cpp, scope, self._declared, findings)
 
@@ -187,7 +198,8 @@ class _BlockCheck:
             hint = f"To set a variable, write `{name} = {self._cpp.code[value.start : value.end]};`"
             self._findings.warning("AOS149", "this statement does nothing", self._span(value), hint)
         for odd in self._cpp.odd_parts:
-            if {*odd.of_enums} <= {*self._scope.enum_values} - {*self._locals}:
+            is_of_enums = {*odd.of_enums} <= {*self._scope.enum_values} - {*self._locals}
+            if is_of_enums and odd.local not in self._of_several:
                 self._findings.warning("AOS149", odd.message, self._span(odd.extent), odd.hint)
 
     def _check_conditions(self) -> None:
