@@ -1,4 +1,5 @@
 import math
+from typing import Any
 
 import msgspec
 import pytest
@@ -27,6 +28,10 @@ def trial(*steps: str, seed: int = 1, ending: str = "goal", states: tuple[str, .
     )
 
 
+def check(**asked: Any) -> Claim:
+    return Claim(says="", **asked)
+
+
 DELIVERED = trial("pick > ok", "sense > empty", "sense > full", "go(to=hall) > there", "serve > done")
 
 
@@ -50,29 +55,29 @@ def test_a_pattern_names_an_action_with_or_without_parameters_and_response(patte
 @pytest.mark.parametrize(
     ("claim", "holds"),
     [
-        (Claim(says="", first="pick"), True),
-        (Claim(says="", first="serve"), False),
-        (Claim(says="", last="serve"), True),
-        (Claim(says="", last="pick"), False),
-        (Claim(says="", some="sense > full"), True),
-        (Claim(says="", some="sense > broken"), False),
-        (Claim(says="", never="drop"), True),
-        (Claim(says="", never="sense"), False),
-        (Claim(says="", order=("pick", "sense > full", "serve")), True),
-        (Claim(says="", order=("serve", "pick")), False),
-        (Claim(says="", never_order=("serve", "pick")), True),
-        (Claim(says="", never_order=("pick", "serve")), False),
-        (Claim(says="", before=Before(step="serve", comes="sense > full", since="pick")), True),
-        (Claim(says="", before=Before(step="serve", comes="sense", times=3)), False),
-        (Claim(says="", before=Before(step="serve", comes="sense", since="go")), False),
-        (Claim(says="", count=Count(step="sense", at_least=2, at_most=2)), True),
-        (Claim(says="", count=Count(step="sense", at_most=1)), False),
-        (Claim(says="", actions=DELIVERED.actions), True),
-        (Claim(says="", actions=("pick",)), False),
-        (Claim(says="", endings=("over", "goal")), True),
-        (Claim(says="", endings=("failure",)), False),
-        (Claim(says="", goal=True), True),
-        (Claim(says="", goal=False), False),
+        (check(first="pick"), True),
+        (check(first="serve"), False),
+        (check(last="serve"), True),
+        (check(last="pick"), False),
+        (check(some="sense > full"), True),
+        (check(some="sense > broken"), False),
+        (check(never="drop"), True),
+        (check(never="sense"), False),
+        (check(order=("pick", "sense > full", "serve")), True),
+        (check(order=("serve", "pick")), False),
+        (check(never_order=("serve", "pick")), True),
+        (check(never_order=("pick", "serve")), False),
+        (check(before=Before(step="serve", comes="sense > full", since="pick")), True),
+        (check(before=Before(step="serve", comes="sense", times=3)), False),
+        (check(before=Before(step="serve", comes="sense", since="go")), False),
+        (check(count=Count(step="sense", at_least=2, at_most=2)), True),
+        (check(count=Count(step="sense", at_most=1)), False),
+        (check(actions=DELIVERED.actions), True),
+        (check(actions=("pick",)), False),
+        (check(endings=("over", "goal")), True),
+        (check(endings=("failure",)), False),
+        (check(goal=True), True),
+        (check(goal=False), False),
     ],
 )
 def test_each_check_can_hold_and_can_fail(claim, holds):
@@ -80,7 +85,7 @@ def test_each_check_can_hold_and_can_fail(claim, holds):
 
 
 def test_nothing_is_claimed_of_states_that_nobody_knows():
-    claim = Claim(says="", never_state="hurt=true | lost=true")
+    claim = check(never_state="hurt=true | lost=true")
     unknown = judge(claim, [DELIVERED])
     assert not unknown.is_seen
     assert failed_missions(unknown, [DELIVERED])[0].endswith("; no state of the world was recorded")
@@ -100,18 +105,18 @@ WORLD = trial(
 @pytest.mark.parametrize(
     ("claim", "holds"),
     [
-        (Claim(says="", starts=("pick", "go")), True),
-        (Claim(says="", starts=("pick", "serve")), False),
-        (Claim(says="", starts=("pick", "go", "serve", "*")), False),
-        (Claim(says="", first_state='"held": true'), True),
-        (Claim(says="", first_state='"held": false'), False),
-        (Claim(says="", last_state='"served": true | never'), True),
-        (Claim(says="", last_state='"held": true'), False),
-        (Claim(says="", around=Around(step="serve", before='"held": true', after='"served": true')), True),
-        (Claim(says="", around=Around(step="serve", before='"held": false')), False),
-        (Claim(says="", around=Around(step="pick", after='"held": false')), False),
-        (Claim(says="", around=Around(step="pick", before='"held"')), False),
-        (Claim(says="", around=Around(step="go", after='"held"')), False),
+        (check(starts=("pick", "go")), True),
+        (check(starts=("pick", "serve")), False),
+        (check(starts=("pick", "go", "serve", "*")), False),
+        (check(first_state='"held": true'), True),
+        (check(first_state='"held": false'), False),
+        (check(last_state='"served": true | never'), True),
+        (check(last_state='"held": true'), False),
+        (check(around=Around(step="serve", before='"held": true', after='"served": true')), True),
+        (check(around=Around(step="serve", before='"held": false')), False),
+        (check(around=Around(step="pick", after='"held": false')), False),
+        (check(around=Around(step="pick", before='"held"')), False),
+        (check(around=Around(step="go", after='"held"')), False),
     ],
 )
 def test_the_world_is_asked_at_steps_and_knows_nothing_of_calls_that_it_has_not_seen(claim, holds):
@@ -120,13 +125,13 @@ def test_the_world_is_asked_at_steps_and_knows_nothing_of_calls_that_it_has_not_
 
 def test_a_model_says_how_its_world_ended():
     ended = Trial(seed=1, ending="goal", goal=False, actions=("a",), responses=("b",), states=("x=1",))
-    assert not judge(Claim(says="", last_state="world_ending=failure"), [ended]).is_seen
+    assert not judge(check(last_state="world_ending=failure"), [ended]).is_seen
     ended = msgspec.structs.replace(ended, world_ending="failure")
-    assert judge(Claim(says="", last_state="world_ending=failure"), [ended]).is_seen
+    assert judge(check(last_state="world_ending=failure"), [ended]).is_seen
 
 
 def test_the_goal_of_a_system_is_asked_of_the_world_where_somebody_knows_it():
-    claim = Claim(says="", goal=True)
+    claim = check(goal=True)
     asked = asking_the_world(claim, "system", '"served": true')
     lies = trial("pick > ok", states=('{"step": 1, "served": false}',))
     assert judge(claim, [lies]).is_seen
@@ -137,7 +142,7 @@ def test_the_goal_of_a_system_is_asked_of_the_world_where_somebody_knows_it():
 
 
 def test_a_claim_about_some_missions_leaves_the_others_out():
-    claim = Claim(says="", when=When(some="serve"), first="pick")
+    claim = check(when=When(some="serve"), first="pick")
     verdict = judge(claim, [DELIVERED, trial("wait > ok", seed=2)])
     assert (verdict.held, verdict.missions, verdict.is_seen) == (1, 1, True)
     assert not judge(claim, [trial("wait > ok")]).is_seen, "no mission shows it"
@@ -145,23 +150,23 @@ def test_a_claim_about_some_missions_leaves_the_others_out():
 
 def test_a_mission_that_broke_counts_against_every_claim():
     broken = Trial(seed=3, ending="fault", goal=False, fault="the engine has ended")
-    verdict = judge(Claim(says="", never="drop", share=0.5), [DELIVERED, broken])
+    verdict = judge(check(never="drop", share=0.5), [DELIVERED, broken])
     assert verdict.failed_seeds == (3,)
     assert verdict.share.value == 0.5
 
 
 def test_surely_asks_the_lower_end_of_the_interval():
     ten = [trial("a > b", seed=seed) for seed in range(10)]
-    assert judge(Claim(says="", goal=True, share=0.8), ten).is_seen
-    assert not judge(Claim(says="", goal=True, share=0.8, surely=True), ten).is_seen
-    assert judge(Claim(says="", goal=True, share=0.7, surely=True), ten).is_seen
+    assert judge(check(goal=True, share=0.8), ten).is_seen
+    assert not judge(check(goal=True, share=0.8, surely=True), ten).is_seen
+    assert judge(check(goal=True, share=0.7, surely=True), ten).is_seen
 
 
 def test_a_claim_that_fails_though_it_held_is_told_with_its_reason():
-    unsure = judge(Claim(says="", goal=True, share=0.9, surely=True), [DELIVERED])
+    unsure = judge(check(goal=True, share=0.9, surely=True), [DELIVERED])
     assert verdict_text(unsure).endswith("; wanted 0.90 at the lower end; more missions may tell)")
     assert verdict_line("part", unsure).endswith("more missions may tell)")
-    about_none = judge(Claim(says="", goal=True, when=When(some="fly")), [DELIVERED])
+    about_none = judge(check(goal=True, when=When(some="fly")), [DELIVERED])
     assert (about_none.is_seen, verdict_text(about_none)) == (False, "no mission was one that it is about")
 
 
@@ -224,6 +229,6 @@ def test_speed_is_simulated_time_for_processor_time():
 
 
 def test_a_claim_about_none_of_the_missions_is_said_to_have_no_case():
-    claim = Claim(says="", first="pick", when=When(some="drop"))
+    claim = check(first="pick", when=When(some="drop"))
     assert (judge(claim, [DELIVERED]).is_seen, judge(claim, [DELIVERED]).word) == (False, "no case")
-    assert judge(Claim(says="", first="serve"), [DELIVERED]).word == "not seen"
+    assert judge(check(first="serve"), [DELIVERED]).word == "not seen"
