@@ -201,3 +201,35 @@ async def test_a_leak_is_sought_where_ways_to_it_are_known_and_none_pays_unseen(
     async with engine_of_text(pipe(40)) as engine:
         run = await simulated(engine, 2000, seed=2, goal_probability=1, step_limit=60)
     assert run.discounted_return > 20
+
+
+async def test_a_robot_does_not_go_on_going_where_it_is_already():
+    """A way into a room promises nothing more where the robot is in it."""
+    coats = BundleWriter(
+        "coats",
+        """horizon: 60
+discount: 0.98
+state_variable: int room
+state_variable: bool worn []
+code:
+state.worn.assign(9, false);
+state_variable: bool sold []
+code:
+state.sold.assign(9, false);
+initial_belief:
+for (int i = 0; i < 9; i++) state.worn[i] = AOS.Bernoulli(0.45);
+""",
+    )
+    go = "__reward = -1;\nif (AOS.Bernoulli(0.9)) state__.room = to;\n"
+    coats.skill("go", go + "__moduleResponse = state__.room == to ? there : not_there;", over={"to": "3"})
+    here = "bool is_here = state.room == coat / 3;\n"
+    feel = here + "__reward = -0.3;\nbool is_rough = AOS.Bernoulli(0.75) == state.worn[coat];\n"
+    feel += "__moduleResponse = !is_here ? nothing : is_rough ? rough : smooth;"
+    coats.skill("feel", feel, over={"coat": "9"})
+    sell = here + "__reward = !is_here || state.sold[coat] ? -1 : state.worn[coat] ? -5 : 4;\n"
+    sell += "if (is_here) state__.sold[coat] = true;\n__moduleResponse = sold;"
+    coats.skill("sell", sell, over={"coat": "9"})
+    async with engine_of_text(coats.files) as engine:
+        run = await simulated(engine, 1000, seed=2, goal_probability=1, step_limit=40)
+    assert sum(action.startswith("go") for action in run.actions) <= 6
+    assert sum(action.startswith("sell") for action in run.actions) >= 4

@@ -69,11 +69,29 @@ class TestPlans {
       if (p == places.size()) places.push_back({prefix, {}});
       places[p].options.push_back(o);
     }
+    erase_if(places, [&](const Place& place) { return !place.prefix.empty() && !is_elsewhere(place, steps, random); });
     for (const auto& test : tests_.tests()) add_test(places.front(), test.action, test.reward, tests_.reports_of(test.action), steps, random);
     for (Place& place : places) {
       if (!place.prefix.empty()) observe(place, barred, steps, random);
     }
     return places;
+  }
+
+  // Whether more is earned at a place by going there first. Else the robot is there already, and would go there for ever: a plan that
+  // goes there promises all that is there, which no single choice does.
+  bool is_elsewhere(const Place& place, double& steps, Sampler& random) const {
+    double by_going = 0;
+    double at_once = 0;
+    for (const std::size_t o : place.options) {
+      const Option last{gains_.way(o).back()};
+      by_going += belief_.mean([&](std::size_t k) { return std::max(gains_.earned_in(o, k), 0.0); });
+      at_once += belief_.mean([&](std::size_t k) {
+        typename Model::State state = belief_.states()[k];
+        return std::max(taken_option<Model>(last, state, random, nullptr).earned, 0.0);
+      });
+    }
+    steps -= static_cast<double>(place.options.size() * belief_.size());
+    return by_going > at_once;
   }
 
   // Goes to a place from each state, and takes there what is no move.
