@@ -72,14 +72,14 @@ _HEADERS = {
 _HEADER_OF = {name: header for header, names in _HEADERS.items() for name in names.split()}
 
 _DRAWS = {
-    "bernoulli_distribution": "AOS.Bernoulli(p)",
-    "binomial_distribution": "AOS.Bernoulli(p)` in a loop, and count",
-    "discrete_distribution": "AOSUtils::SampleDiscrete(std::vector<double>{...})`, which gives an index",
-    "normal_distribution": "AOS.SampleNormal(mean, deviation)",
-    "uniform_int_distribution": "low + AOSUtils::SampleDiscrete(std::vector<double>(n, 1.0 / n))",
-    "uniform_real_distribution": "AOS.SampleUniform(low, high)",
+    "bernoulli_distribution": "`AOS.Bernoulli(p)`",
+    "binomial_distribution": "`AOS.Bernoulli(p)` in a loop, and count",
+    "discrete_distribution": "`AOSUtils::SampleDiscrete(std::vector<double>{...})`, which gives an index",
+    "normal_distribution": "`AOS.SampleNormal(mean, deviation)`",
+    "uniform_int_distribution": "`low + AOSUtils::SampleDiscrete(std::vector<double>(n, 1.0 / n))`",
+    "uniform_real_distribution": "`AOS.SampleUniform(low, high)`",
 }
-"""Draws of AOS in the place of distributions; the hint closes the quote where it is open."""
+"""Draws of AOS in the place of distributions."""
 _GENERATORS = frozenset({
     "default_random_engine", "knuth_b", "minstd_rand", "minstd_rand0", "mt19937", "mt19937_64",
     "random_device", "ranlux24", "ranlux24_base", "ranlux48", "ranlux48_base",
@@ -117,5 +117,5 @@ def instead_of_unrepeatable(name: str) -> str:
     if name in _GENERATORS:
         return "Leave it out: AOS.Bernoulli and its like need no generator"
     if (draw := _DRAWS.get(name)) is not None:
-        return f"Write `{draw}" + ("`" if draw.count("`") == 0 else "")
+        return f"Write {draw}"
     return "Draw with AOS.Bernoulli and its like; keep what changes in the state"
