@@ -17,7 +17,7 @@ _GIVING = re.compile(
     r"AOS\w*(\.|::)(Bernoulli|Sample\w+)|std::(clamp|max|min|remove|remove_if|unique)|.*\.empty"
 )
 _OF_STATE = re.compile(r"\*?state_*\.")
-_PART_OF_STATE = re.compile(r"\*?state_*\.\w+(?:(?:\.|->)\w+|\[[\w.]+\])*")
+_PART_OF_STATE = re.compile(r"\*?state_*(?:(?:\.|->)\w+|\[[\w.]+\])*")
 _STEADY = re.compile(r"[\w.\[\]]+")
 _LEAVING = ("break_statement", "continue_statement", "goto_statement", "return_statement", "throw_statement")
 
@@ -81,7 +81,7 @@ def _copied(loop: tree_sitter.Node) -> Iterator[Odd]:
 
 
 def _copied_variable(node: tree_sitter.Node) -> Iterator[Odd]:
-    """Yields a copy of a part of the state that is only set: `auto box = state__.box; box.x = 1;`."""
+    """Yields a copy of the state, or of a part, that is only set: `auto box = state__.box; box.x = 1;`."""
     declared = field_of(node, "declarator")
     if declared is None or declared.type != "init_declarator" or node.parent is None:
         return
