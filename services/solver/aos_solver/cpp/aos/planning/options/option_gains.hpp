@@ -69,13 +69,12 @@ class OptionGains {
   void end_after(double steps) { lasts_ = steps; }
   double lasts() const { return lasts_; }
   // What the best options earn less for having lost so many steps.
-  double lost_by(double steps, const StateWeights& weights) {
+  double lost_by(double steps, const StateWeights& weights) const {
     if (!std::isfinite(lasts_)) return 0;
-    const double whole = best(weights);
-    lasts_ -= steps;
-    const double less = whole - best(weights);
-    lasts_ += steps;
-    return std::max(less, 0.0);
+    support_of(weights);
+    const double whole = best_of_support(none, lasts_);
+    support_of(weights);
+    return std::max(whole - best_of_support(none, lasts_ - steps), 0.0);
   }
 
   // Lets plans count as options do, in place of those before.
@@ -143,16 +142,13 @@ class OptionGains {
 
   // What the best options earn. What cannot follow the option `before` is left out.
   double best(const StateWeights& weights, std::size_t before = none) const {
-    support_.clear();
-    for (std::size_t k = 0; k < states_; ++k) {
-      if (weights[k] > negligible) support_.push_back({k, weights[k]});
-    }
-    return best_of_support(before);
+    support_of(weights);
+    return best_of_support(before, lasts_);
   }
   // The same where the state is seen.
   double best_in(std::size_t state, std::size_t before = none) const {
     support_.assign(1, {state, 1.0});
-    return best_of_support(before);
+    return best_of_support(before, lasts_);
   }
   // The option that `best_in` has found best, if it is only one; none else.
   std::size_t only_one() const { return chosen_.size() == 1 ? chosen_.front() : none; }
@@ -195,7 +191,15 @@ class OptionGains {
     }
   }
 
-  double best_of_support(std::size_t before) const {
+  void support_of(const StateWeights& weights) const {
+    support_.clear();
+    for (std::size_t k = 0; k < states_; ++k) {
+      if (weights[k] > negligible) support_.push_back({k, weights[k]});
+    }
+  }
+
+  // What the best options earn in so many steps; an option that may end the mission takes its share from the weights.
+  double best_of_support(std::size_t before, double left) const {
     candidates_.clear();
     for (std::size_t o = 0; o < size(); ++o) {
       if (before != none && cannot_follow(o, before)) continue;
@@ -205,7 +209,7 @@ class OptionGains {
     sort_stably(candidates_, [](const Candidate& one, const Candidate& other) { return one.income > other.income; });
     double sum = 0;
     double discount = 1;
-    double left = before != none ? lasts_ - lengths_[before] : lasts_;
+    if (before != none) left -= lengths_[before];
     chosen_.clear();
     for (const Candidate& candidate : candidates_) {
       if (ends_[candidate.option] || lengths_[candidate.option] > left) continue;

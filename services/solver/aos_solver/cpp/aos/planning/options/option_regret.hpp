@@ -32,7 +32,7 @@ class OptionRegret {
     List<double> avoided{};  // see OptionCandidate
   };
 
-  OptionRegret(const SampledBelief<Model>& belief, OptionGains<Model>& gains) : belief_(belief), gains_(gains) {}
+  OptionRegret(const SampledBelief<Model>& belief, const OptionGains<Model>& gains) : belief_(belief), gains_(gains) {}
 
   // Takes the belief and the gains as they are now.
   void begin() {
@@ -117,7 +117,7 @@ class OptionRegret {
     return of_gain * (gains_.size() * belief_.size());
   }
   const SampledBelief<Model>& belief_;
-  OptionGains<Model>& gains_;
+  const OptionGains<Model>& gains_;
   List<std::size_t> likely_;
   List<double> seen_;  // what the states are worth if they are seen
   List<std::size_t> only_ways_;

@@ -19,6 +19,8 @@ class TestPlans {
   void add(const BarredActions& barred, double& steps, Sampler& random) {
     const List<Place> places = places_of(barred, steps, random);
     for (int round = 0; round < 2; ++round) {
+      const double some = std::min(steps_of_price, gains_.lasts());
+      price_ = of_price * gains_.lost_by(some, belief_.weights()) / some;
       List<TestPlan> plans;
       for (const Place& place : places) {
         if (place.prefix.empty()) add_here(plans, place, steps);
@@ -45,6 +47,7 @@ class TestPlans {
   struct Place {
     Option prefix;
     List<double> paid;  // for that, by state
+    double value = 0;   // of the options, each in the states where it earns
     double discount = 1;
     List<StoppingTest> tests{};
     Options options{};
@@ -68,6 +71,7 @@ class TestPlans {
       if (p > most_places) continue;
       if (p == places.size()) places.push_back({prefix, {}});
       places[p].options.push_back(o);
+      places[p].value += value;
     }
     erase_if(places, [&](const Place& place) { return !place.prefix.empty() && !is_elsewhere(place, steps, random); });
     for (const auto& test : tests_.tests()) add_test(places.front(), test.action, test.reward, tests_.reports_of(test.action), steps, random);
@@ -80,18 +84,16 @@ class TestPlans {
   // Whether more is earned at a place by going there first. Else the robot is there already, and would go there for ever: a plan that
   // goes there promises all that is there, which no single choice does.
   bool is_elsewhere(const Place& place, double& steps, Sampler& random) const {
-    double by_going = 0;
     double at_once = 0;
     for (const std::size_t o : place.options) {
       const Option last{gains_.way(o).back()};
-      by_going += belief_.mean([&](std::size_t k) { return std::max(gains_.earned_in(o, k), 0.0); });
       at_once += belief_.mean([&](std::size_t k) {
         typename Model::State state = belief_.states()[k];
         return std::max(taken_option<Model>(last, state, random, nullptr).earned, 0.0);
       });
     }
     steps -= static_cast<double>(place.options.size() * belief_.size());
-    return by_going > at_once;
+    return place.value > at_once;
   }
 
   // Goes to a place from each state, and takes there what is no move.
@@ -231,8 +233,7 @@ class TestPlans {
     for (const StoppingChoice& choice : choices) shortest = std::min(shortest, choice.steps);
     const double fit = gains_.lasts() - static_cast<double>(place.prefix.size()) - shortest;
     most_tests = static_cast<int>(std::clamp<double>(fit, 0, most_tests));
-    const double some = std::min(steps_of_price, gains_.lasts());
-    OptimalStopping stopping{choices, tests, Model::discount, rest, of_price * gains_.lost_by(some, belief_.weights()) / some};
+    OptimalStopping stopping{choices, tests, Model::discount, rest, price_};
     StoppingPlan plan = stopping.plan(belief_.weights(), most_tests);
     steps -= of_product * static_cast<double>(stopping.plans() * belief_.size() * (choices.size() + tests.size()));
     return plan;
@@ -266,6 +267,7 @@ class TestPlans {
   OptionGains<Model>& gains_;
   const OptionTests<Model>& tests_;
   ReportedStep<Model> step_;
+  double price_ = 0;  // of a step before a deadline
 };
 
 }
