@@ -9,6 +9,7 @@ Slip = tuple[ast.expr, str, str]
 
 _OF_TEXTS = frozenset({"lower", "lstrip", "replace", "rstrip", "split", "splitlines", "strip", "upper"})
 _GIVING = frozenset({"abs", "max", "min", "round", "sorted", "str", "sum"})
+_GIVING_NONE = frozenset({"append", "extend", "reverse", "sort"})
 _FILLING = frozenset({"format", "format_map", "replace", "sub"})
 _FIELD = re.compile(r"\{(\w+)[^{}]*\}")
 
@@ -19,13 +20,18 @@ def python_slips(tree: ast.AST, variables: Collection[str]) -> Iterator[Slip]:
     names = {node.id for node in nodes if isinstance(node, ast.Name)} | {*variables, "__input"}
     fills_in = any(isinstance(node, ast.Attribute) and node.attr in _FILLING for node in nodes)
     for node in nodes:
-        yield from _of_statement(node)
+        yield from _slip(node)
         if not fills_in and not isinstance(node, ast.JoinedStr | ast.Expr):
             yield from _without_f(node, names)
 
 
-def _of_statement(node: ast.AST) -> Iterator[Slip]:
+def _slip(node: ast.AST) -> Iterator[Slip]:
     match node:
+        case ast.Compare(left=left, ops=[ast.Is() | ast.IsNot()], comparators=[ast.Constant(value=value)]):
+            if isinstance(value, str | int | float) and not isinstance(value, bool):
+                yield left, f"`is` asks whether this is the very object {value!r}", "Write `==` or `!=`"
+        case ast.Assign(value=ast.Call(func=ast.Attribute(attr=name)) as call) if name in _GIVING_NONE:
+            yield call, f"`{name}` changes the list and gives None", "Call it in a line of its own"
         case ast.Expr(value=ast.Call(func=ast.Attribute(value=whole, attr=name)) as call):
             taker = whole.id if isinstance(whole, ast.Name) else "NAME"
             if name in _OF_TEXTS and taker != "os":

@@ -14,7 +14,6 @@ from aos_protocol.spelling import nearest, quoted
 
 _OF_NUMBERS = frozenset({"abs", "chr", "float", "int", "round"})
 _PYTHON = {"bool": bool, "int": int, "float": float, "double": float, "string": str}
-_GIVING_NONE = frozenset({"append", "extend", "reverse", "sort"})
 _STATUSES = ("succeeded", "refused", "failed", "timed_out", "cancelled", "unknown", "stopped")
 _ORDERINGS = (ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
@@ -54,7 +53,6 @@ def check_value_uses(
                 *_attribute(node, numbers_and_texts, kinds, id(node) in tested),
                 *_mistakes(node, known, takes_all),
                 *_unlike(node, known_plain),
-                *_slips(node),
             ):
                 span = snippet.locate(name.lineno - lines_above, name.col_offset + 1)
                 findings.warning("AOS149", message, span, hint)
@@ -161,15 +159,6 @@ def _tested(node: ast.AST) -> Iterator[ast.AST]:
             yield part
         case ast.UnaryOp(op=ast.Not(), operand=part):
             yield part
-
-
-def _slips(node: ast.AST) -> Iterator[tuple[ast.expr, str, str]]:
-    match node:
-        case ast.Compare(left=left, ops=[ast.Is() | ast.IsNot()], comparators=[ast.Constant(value=value)]):
-            if isinstance(value, str | int | float) and not isinstance(value, bool):
-                yield left, f"`is` asks whether this is the very object {value!r}", "Write `==` or `!=`"
-        case ast.Assign(value=ast.Call(func=ast.Attribute(attr=name)) as call) if name in _GIVING_NONE:
-            yield call, f"`{name}` changes the list and gives None", "Call it in a line of its own"
 
 
 def _unlike(node: ast.AST, kinds: dict[str, str]) -> Iterator[tuple[ast.expr, str, str]]:

@@ -9,7 +9,7 @@ from aos_language.reading.sdl_words import GRAMMARS
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.spelling import did_you_mean
 from aos_solver.building.map_messages import told_of_a_map
-from aos_solver.building.message_hints import NAMES, hint_for
+from aos_solver.building.message_hints import hint_for
 from aos_solver.building.type_words import in_words
 from aos_solver.emission.emit import EmittedModel
 
@@ -26,7 +26,7 @@ _UNKNOWN = re.compile(
 )
 _OF_PYTHON = {"True": "true", "False": "false", "None": "nullptr", "elif": "else if", "pass": ";"}
 _OF_PYTHON |= {"TRUE": "true", "FALSE": "false", "null": "nullptr"}
-_OF_PYTHON |= NAMES
+_OF_PYTHON |= {"Float": "double", "len": "values.size()", "str": "std::string"}
 _OF_PYTHON |= {"AND": "&&", "OR": "||", "in": ":", "is": "=="}
 _A_TEXT = re.compile(
     r"`const char ?(?:\*|\[\d+\])`.*`(?!const char)|`(?!const char)[\w ]+`.*`const char ?(?:\*|\[\d+\])`"

@@ -7,8 +7,6 @@ _MEMBERS = {
     "len": "size", "length": "size", "pop": "pop_back", "push": "push_back", "remove": "erase",
 }  # fmt: skip
 """Members as other languages call them."""
-NAMES = {"Float": "double", "len": "values.size()", "null": "nullptr", "str": "std::string"}
-"""Names of other languages."""
 _HINTS = (
     (
         re.compile(r"conversion from `(\w+)\*` to non-scalar type `\1` requested"),
