@@ -1,4 +1,4 @@
-"""Statements of C++ that do nothing, by their syntax trees."""
+"""Statements of C++ that do nothing, and settings where a comparison is meant, by their syntax trees."""
 
 import tree_sitter
 
@@ -31,6 +31,22 @@ def is_turned(assignment: tree_sitter.Node) -> bool:
     if operator is None or right is None or operator.end_byte != right.start_byte:
         return False
     return text_of(right).startswith("+") and not text_of(right).startswith("++")
+
+
+def is_condition(node: tree_sitter.Node, prefix: int) -> bool:
+    """Returns whether an assignment is a whole condition. In a second pair of brackets it is meant so; those
+    before the prefix are not of the code."""
+    outer = node.parent
+    if outer is None or outer.type == "condition_clause":
+        return outer is not None
+    if outer.type != "parenthesized_expression":
+        return outer.type == "for_statement" and node == field_of(outer, "condition")
+    is_in_brackets_of_code = outer.start_byte >= prefix
+    owner = outer.parent
+    if owner is None or not is_in_brackets_of_code:
+        return not is_in_brackets_of_code
+    is_owned = owner.type in ("conditional_expression", "do_statement")
+    return is_owned and outer == field_of(owner, "condition")
 
 
 def _only_has_a_value(node: tree_sitter.Node) -> bool:

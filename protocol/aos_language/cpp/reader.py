@@ -1,6 +1,5 @@
 """A walk over the syntax tree of a C++ snippet that collects what it mentions, calls and declares."""
 
-from bisect import bisect_left
 from collections.abc import Iterable
 from typing import TypeVar
 
@@ -19,11 +18,12 @@ from aos_language.cpp.facts import (
     Mention,
     OddPart,
 )
-from aos_language.cpp.idle import idle_parts, is_turned
+from aos_language.cpp.idle import idle_parts, is_condition, is_turned
 from aos_language.cpp.nodes import below, child_of, field_of, names_of, operator_of, picks_member, text_of
 from aos_language.cpp.odd import odd_parts
-from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
-from aos_protocol.spelling import nearest
+from aos_language.cpp.places import Places
+from aos_language.cpp.syntax_faults import mistaken_label, unexpected
+from aos_language.cpp.tokens import Extent, Fault, FaultKind, Tokens
 
 _CHANGING_FUNCTIONS = frozenset({"Initialize", "SetNull", "Uninitialize", "exchange", "iota", "swap", "tie"})
 
@@ -38,9 +38,7 @@ class TreeReader:
         self._code = code
         self._prefix = prefix
         self._tokens = tokens
-        self._lines = Lines(code)
-        self._offsets = _character_offsets(complete)
-        self._inserted = [at + index for index, at in enumerate(tokens.missing_semicolons)]
+        self.extent = Places(code, complete, prefix, tokens.missing_semicolons).extent
         self._stack: list[tuple[tree_sitter.Node, Access]] = []
         self.mentions: list[Mention] = []
         self.calls: list[Call] = []
@@ -75,20 +73,10 @@ class TreeReader:
 
     def _visit(self, node: tree_sitter.Node, access: Access) -> None:
         if node.is_missing:
-            self._missing(node)
+            self._fault(node, f"expected {node.type!r}")
             return
         if node.is_error:
-            text = text_of(node).strip().splitlines() or [""]
-            before, after = node.prev_sibling, node.next_sibling
-            is_cut = after and after.type != "}" and after.start_point[0] > node.end_point[0]
-            is_behind = (
-                before and before.type not in ("{", "}", ";") and before.end_point[0] < node.start_point[0]
-            )
-            line = "this line" if is_cut else "the line above" if is_behind else ""
-            hint = f"Is a semicolon missing at the end of {line}?" if line else ""
-            self.faults.append(
-                Fault(FaultKind.SYNTAX, f"unexpected {text[0][:40]!r}", self.extent(node), hint)
-            )
+            self._fault(node, *unexpected(node))
         for odd in odd_parts(node):
             extent = self.extent(odd.place)
             self.odd_parts.append(OddPart(extent, odd.message, odd.hint, odd.of_enums, odd.local))
@@ -108,11 +96,9 @@ class TreeReader:
         self._push(node.children)
 
     def _label(self, node: tree_sitter.Node, access: Access) -> None:
-        """A label that was meant as `default:`; no other is looked at."""
         label = child_of(node, "label")
-        if nearest(text_of(label), ("default",)):
-            message, hint = f"`{text_of(label)}:` is a label", "Did you mean `default:`?"
-            self.faults.append(Fault(FaultKind.SYNTAX, message, self.extent(label), hint))
+        if mistake := mistaken_label(text_of(label)):
+            self._fault(label, *mistake)
         self._push(node.children[1:])
 
     def _binary(self, node: tree_sitter.Node, access: Access) -> None:
@@ -129,8 +115,8 @@ class TreeReader:
             self.idle_operators.append(self.extent(node.children[1]))
         self._push(node.children)
 
-    def _missing(self, node: tree_sitter.Node) -> None:
-        self.faults.append(Fault(FaultKind.SYNTAX, f"expected {node.type!r}", self.extent(node)))
+    def _fault(self, node: tree_sitter.Node, message: str, hint: str = "") -> None:
+        self.faults.append(Fault(FaultKind.SYNTAX, message, self.extent(node), hint))
 
     # --- paths ---
 
@@ -209,7 +195,7 @@ class TreeReader:
         kind = Access.WRITE if is_plain else Access.UPDATE
         if right is not None and is_turned(node):
             self.idle_operators.append(self.extent(right))
-        if is_plain and operator is not None and self._is_condition(node):
+        if is_plain and operator is not None and is_condition(node, self._prefix):
             self.set_in_conditions.append((self.extent(left), self.extent(operator)))
         if _HANDLERS.get(left.type) is TreeReader._path:
             self._path(left, kind, self.extent(right) if right is not None else None)
@@ -217,20 +203,6 @@ class TreeReader:
             self._push([left], kind)
         self._push([right])
         self._push(child for child in node.children if child.is_error)
-
-    def _is_condition(self, node: tree_sitter.Node) -> bool:
-        """Returns whether this is a whole condition. In a second pair of brackets it is meant so."""
-        outer = node.parent
-        if outer is None or outer.type == "condition_clause":
-            return outer is not None
-        if outer.type != "parenthesized_expression":
-            return outer.type == "for_statement" and node == field_of(outer, "condition")
-        is_in_brackets_of_code = outer.start_byte >= self._prefix
-        owner = outer.parent
-        if owner is None or not is_in_brackets_of_code:
-            return not is_in_brackets_of_code
-        is_owned = owner.type in ("conditional_expression", "do_statement")
-        return is_owned and outer == field_of(owner, "condition")
 
     def _update(self, node: tree_sitter.Node, access: Access) -> None:
         self._push([field_of(node, "argument")], Access.UPDATE)
@@ -368,18 +340,6 @@ class TreeReader:
     def _skip(self, node: tree_sitter.Node, access: Access) -> None:
         pass
 
-    # --- places ---
-
-    def extent(self, node: tree_sitter.Node) -> Extent:
-        start, end = (self._offset(byte) for byte in (node.start_byte, node.end_byte))
-        return self._lines.extent(start, end)
-
-    def _offset(self, byte: int) -> int:
-        offset = max(byte - self._prefix, 0)
-        if self._offsets is not None:
-            offset = self._offsets[min(offset, len(self._offsets) - 1)]
-        return min(offset - bisect_left(self._inserted, offset), len(self._code))
-
 
 _HANDLERS = {
     "assignment_expression": TreeReader._assignment,
@@ -441,11 +401,3 @@ _Placed = TypeVar("_Placed", Mention, Declaration)
 def _of_code(found: list[_Placed]) -> tuple[_Placed, ...]:
     """The finds of the code itself, in the order of the text: those around it have places without length."""
     return tuple(item for item in sorted(found, key=_by_start) if item.extent.start < item.extent.end)
-
-
-def _character_offsets(code: str) -> list[int] | None:
-    """Returns the character that each byte of the UTF-8 text belongs to; None where they are the same."""
-    if code.isascii():
-        return None
-    offsets = [index for index, character in enumerate(code) for _ in character.encode("utf-8", "replace")]
-    return [*offsets, len(code)]

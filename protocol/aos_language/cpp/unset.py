@@ -13,8 +13,8 @@ from aos_language.cpp.evaluation import Evaluation
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import names_in
 from aos_language.cpp.nodes import below, field_of, field_text, operator_of, text_of
-from aos_language.cpp.reader import TreeReader
-from aos_language.cpp.tokens import Extent, Tokens
+from aos_language.cpp.places import Places
+from aos_language.cpp.tokens import Extent
 from aos_language.cpp.tree import tree_of
 from aos_language.cpp.ways import State, Ways, merged
 
@@ -43,9 +43,9 @@ def unset_reads(cpp: Cpp, enums: frozenset[str] = frozenset()) -> tuple[Unset, .
         walk.statement(body, State())
     except RecursionError:
         return ()  # Text that is nested so deeply no person reads either.
-    reader = TreeReader(cpp.code, complete, len(_BEFORE), Tokens((), (), (), cpp.missing_semicolons))
+    places = Places(cpp.code, complete, len(_BEFORE), cpp.missing_semicolons)
     return tuple(
-        Unset(text_of(node), kind, reader.extent(node), never) for node, kind, never in walk.found.values()
+        Unset(text_of(node), kind, places.extent(node), never) for node, kind, never in walk.found.values()
     )
 
 

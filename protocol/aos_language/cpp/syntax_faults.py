@@ -1,0 +1,23 @@
+"""Messages for places where a snippet is no C++."""
+
+import tree_sitter
+
+from aos_language.cpp.nodes import text_of
+from aos_protocol.spelling import nearest
+
+
+def unexpected(node: tree_sitter.Node) -> tuple[str, str]:
+    """Returns the message and the hint for a part that the parser could not read."""
+    text = text_of(node).strip().splitlines() or [""]
+    before, after = node.prev_sibling, node.next_sibling
+    is_cut = after and after.type != "}" and after.start_point[0] > node.end_point[0]
+    is_behind = before and before.type not in ("{", "}", ";") and before.end_point[0] < node.start_point[0]
+    line = "this line" if is_cut else "the line above" if is_behind else ""
+    hint = f"Is a semicolon missing at the end of {line}?" if line else ""
+    return f"unexpected {text[0][:40]!r}", hint
+
+
+def mistaken_label(label: str) -> tuple[str, str] | None:
+    """Returns the message and the hint for a label that was meant as `default:`; no other is looked at."""
+    is_meant = nearest(label, ("default",))
+    return (f"`{label}:` is a label", "Did you mean `default:`?") if is_meant else None
