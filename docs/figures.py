@@ -2,8 +2,8 @@
 
 A page of docs/lab has one table of figures, between `<!-- figures -->` and `<!-- end -->`. The table's
 head says when it was measured, at which commit and on which machine, and the table has what the commands
-print. `checking` takes some minutes, `speed` ten and `histories` one, longer beside other work. `--show`
-prints and changes no page.
+print. `checking` takes some minutes and `speed` ten, longer beside other work. `--show` prints and
+changes no page.
 """
 
 import argparse
@@ -36,12 +36,6 @@ CHECKING = (
         "no crash, each below 1 s", 20,
     ),
 )  # fmt: skip
-HISTORIES = (
-    Row(
-        "a long history reaches a late joiner",
-        ("python", "-m", "tests.long_history"), "in order; either side grows below 50 MB", 3,
-    ),
-)  # fmt: skip
 SPEED = ("aos", "bench", "--quick", "--metric", "steps", "--metric", "simulations", "--markdown")
 
 
@@ -71,7 +65,7 @@ def speed() -> str:
     return "\n".join([f"`{' '.join(SPEED)}`, commit {commit_of(DOCS)}.", *lines])
 
 
-FIGURES = {"checking": partial(measured, CHECKING), "speed": speed, "histories": partial(measured, HISTORIES)}
+FIGURES = {"checking": partial(measured, CHECKING), "speed": speed}
 
 
 def _printed(command: tuple[str, ...]) -> str:

@@ -69,7 +69,6 @@ def test_a_whole_journal_is_not_refused_for_a_call_by_hand(tmp_path, ledger):
 
 @pytest.mark.parametrize("is_closed", [True, False], ids=["closed", "killed"])
 def test_a_flipped_bit_of_a_journal_is_refused_or_changes_nothing_but_the_last_rows(tmp_path, is_closed):
-    """`python -m tests.chaos.bits` flips a thousand bits of a real run's journal."""
     run = tmp_path / MISSION
     write_run(run, STEPS, "middleware.db")
     journal, log = run / "journal.db", run / "journal.db-wal"
