@@ -9,7 +9,6 @@
   python -m tests.exam solve --models 200
   python -m tests.exam documents --models 40 --texts 2000
   python -m tests.exam failures --models 200
-  python -m tests.exam budgets --simulations 10000
   python -m tests.exam show corridor/17
 
 A problem is named by its family and its seed, FAMILY/SEED, or FAMILY+/SEED where it is large, and is always
@@ -21,8 +20,8 @@ which a value goes from one variable to the next by idioms of C++; in `--texts` 
 variables that are wrongly left out. `intervals` has POMCP decide, and holds the value of its choice and the
 margin over the runner-up, each with two standard errors, against the exact ones, and the interval in which
 the choice changes with a moved belief against the exact change. `failures` breaks a skill of a robot that
-uses it: it always fails, is always lost, or says what the model excludes. `budgets` measures what a
-simulation costs in each planner, on bundles. Exit code 1: a claim was false, or a target was missed.
+uses it: it always fails, is always lost, or says what the model excludes. Exit code 1: a claim was false, or
+a target was missed.
 """
 
 import argparse
@@ -30,9 +29,6 @@ import asyncio
 import sys
 from pathlib import Path
 
-from aos_deploy.places import cache_dir
-
-from .budgets import examine_budgets
 from .commands import CACHE, examine_bundles, examine_documents, examine_engine, examine_solver
 from .failures import examine_failures
 from .families import FAMILIES
@@ -51,8 +47,6 @@ def main() -> int:
     if arguments.command == "show":
         print(pomdp_text(named_problem(arguments.problem, 1_000_000)))
         return 0
-    if arguments.command == "budgets":
-        return asyncio.run(examine_budgets(arguments, cache_dir()))
     if arguments.command == "documents":
         return asyncio.run(examine_documents(arguments))
     if arguments.command == "failures":
@@ -121,11 +115,6 @@ def _add_others(commands: "argparse._SubParsersAction[argparse.ArgumentParser]")
     command.add_argument("--seed", type=int, default=1, help="of the first job")
     command.add_argument("--simulations", type=int, default=1000, metavar="N")
     command.add_argument("--json", action="store_true", help="a line for each mission, and then the summary")
-    command = commands.add_parser("budgets", help="what a simulation costs in each planner, on bundles")
-    command.add_argument("bundle", nargs="*", help="a folder of documents; without any, all that are here")
-    command.add_argument("--simulations", type=int, default=10_000, metavar="N", help="of a decision")
-    command.add_argument("--decisions", type=int, default=4, metavar="N", help="on each bundle")
-    command.add_argument("--seed", type=int, default=1)
     show = commands.add_parser("show", help="print a problem as .pomdp")
     show.add_argument("problem")
 
