@@ -7,7 +7,7 @@ CHAOS :=
 COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11
 RESOLVE := $(COMPILE) $(UPGRADE) --no-annotate --no-header --output-file
 
-.PHONY: help setup check quick test format page promote docs lock newcomer chaos plug hostile clean
+.PHONY: help setup check quick test format page promote docs lock newcomer chaos hostile clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -50,9 +50,6 @@ lock:  ## resolve the dependencies anew and pin them with hashes; needs uv (.ven
 
 chaos:  ## kill, freeze and fail processes of missions, and print what became of them
 	$(BIN)/python -m tests.chaos $(CHAOS)
-
-plug:  ## measure what documents that change cost a mission, and what is believed then
-	$(BIN)/python -m tests.plug
 
 hostile:  ## play hostile documents and strangers on the bus, and print what they were kept from
 	$(BIN)/python -m tests.hostile --times 17

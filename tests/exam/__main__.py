@@ -8,7 +8,6 @@
   python -m tests.exam intervals --models 50
   python -m tests.exam solve --models 200
   python -m tests.exam documents --models 40 --texts 2000
-  python -m tests.exam failures --models 200
   python -m tests.exam show corridor/17
 
 A problem is named by its family and its seed, FAMILY/SEED, or FAMILY+/SEED where it is large, and is always
@@ -19,9 +18,8 @@ of missions: it is right within two standard errors, or 5 % of that range. `docu
 which a value goes from one variable to the next by idioms of C++; in `--texts` more it only looks for
 variables that are wrongly left out. `intervals` has POMCP decide, and holds the value of its choice and the
 margin over the runner-up, each with two standard errors, against the exact ones, and the interval in which
-the choice changes with a moved belief against the exact change. `failures` breaks a skill of a robot that
-uses it: it always fails, is always lost, or says what the model excludes. Exit code 1: a claim was false, or
-a target was missed.
+the choice changes with a moved belief against the exact change. Exit code 1: a claim was false, or a target
+was missed.
 """
 
 import argparse
@@ -29,8 +27,7 @@ import asyncio
 import sys
 from pathlib import Path
 
-from .commands import CACHE, examine_bundles, examine_documents, examine_engine, examine_solver
-from .failures import examine_failures
+from .commands import examine_bundles, examine_documents, examine_engine, examine_solver
 from .families import FAMILIES
 from .generation import named_problem
 from .pomdp_file import pomdp_text
@@ -49,8 +46,6 @@ def main() -> int:
         return 0
     if arguments.command == "documents":
         return asyncio.run(examine_documents(arguments))
-    if arguments.command == "failures":
-        return asyncio.run(examine_failures(arguments, CACHE))
     if arguments.command == "solve":
         return asyncio.run(examine_solver(arguments))
     if arguments.command == "values" and arguments.bundle:
@@ -110,11 +105,6 @@ def _add_others(commands: "argparse._SubParsersAction[argparse.ArgumentParser]")
     command.add_argument("--simulations", type=int, default=2000, metavar="N")
     command.add_argument("--dump", type=Path, metavar="DIR", help="where false bundles are written")
     command.add_argument("--texts", type=int, default=0, metavar="N", help="so many more, not compiled")
-    command = commands.add_parser("failures", help="robots with a broken skill")
-    command.add_argument("--models", type=int, default=60, metavar="N")
-    command.add_argument("--seed", type=int, default=1, help="of the first job")
-    command.add_argument("--simulations", type=int, default=1000, metavar="N")
-    command.add_argument("--json", action="store_true", help="a line for each mission, and then the summary")
     show = commands.add_parser("show", help="print a problem as .pomdp")
     show.add_argument("problem")
 
