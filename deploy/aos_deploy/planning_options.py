@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple, TypeVar
 import typer
 
 from aos_deploy.bundles.engine import engine_of_bundle
-from aos_deploy.bundles.files import deployment_at
+from aos_deploy.bundles.files import Planned
 from aos_deploy.deployment.constraints import constraint_of_option
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.deployment.parts import MAX_COUNT, MAX_SEED
@@ -60,15 +60,14 @@ class SearchOptions(NamedTuple):
         typer.Option("--policy", help="Decide by this policy of `aos solve` instead of searching"),
     ] = None
 
-    def search_in(self, bundle: Path) -> Search:
-        """The search for decisions in a bundle or a deploy file, whose horizon counts where none is given.
+    def search_in(self, planned: Planned) -> Search:
+        """The search for decisions, with the deploy file's horizon where none is given.
 
-        PlanningError where there is a policy that cannot be read, and the errors of `read_deploy_file`.
+        PlanningError where there is a policy that cannot be read.
         """
         fields = self._asdict()
         policy = fields.pop("policy")
-        if self.horizon is None and (deployment := deployment_at(bundle)) is not None:
-            fields["horizon"] = deployment.file.solver.horizon
+        fields["horizon"] = self.horizon or planned.horizon
         return following(Search(**fields), policy)
 
 
@@ -85,20 +84,20 @@ class GivenOptions(NamedTuple):
 
 
 def with_engine(
-    bundle: Path,
+    planned: Planned,
     seed: int,
     given: GivenOptions,
     ask: Callable[[Engine], Awaitable[T]],
     *,
     kind: BuildKind = "quick",
 ) -> T:
-    """Returns what `ask` makes of the bundle's engine, for missions that are given this."""
+    """Returns what `ask` makes of the documents' engine, for missions that are given this."""
     constraints = [constraint_of_option(text) for text in given.never or ()]
     values = values_of_options(given.set_values)
 
     async def run() -> T:
         async with engine_of_bundle(
-            bundle, seed, kind=kind, constraints=constraints, values=values
+            planned, seed, kind=kind, constraints=constraints, values=values
         ) as engine:
             return await ask(engine)
 

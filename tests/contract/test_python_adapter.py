@@ -330,7 +330,7 @@ async def test_a_shell_script_is_a_skill_by_the_function_of_the_page(robot: Robo
     page = (ROOT / "docs/adapters/command.md").read_text(encoding="utf-8")
     function = page.partition("```python\nimport asyncio")[2].partition("```")[0]
     script = robot.folder / "take.sh"
-    (robot.folder / "take.py").write_text(f"import asyncio{function.replace('./take.sh', str(script))}")
+    (robot.folder / "take.py").write_text(f"import asyncio{function}")
     script.write_text(
         "#!/bin/sh\ntrap 'kill $!; exit 1' TERM\nread -r fields\n"
         "case $fields in *never*) sleep 1000 & wait $! ;; *no*) exit 3 ;; *odd*) fields=odd ;; esac\n"

@@ -107,6 +107,11 @@ async def test_messages_of_own_interfaces_leave_no_files_behind(master: str):
         assert await asyncio.wait_for(seen.get(), HANG_S) == CUP
 
 
+async def call_for_ever(node: Ros1Node, service: str):
+    while True:
+        await node.call(ServiceRequest(service, {}, timeout_s=HANG_S))
+
+
 async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, node: Ros1Node):
     await until(node, "/robot/drive", "action")
     started = asyncio.Event()
@@ -119,9 +124,10 @@ async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, nod
     )
     await started.wait()
     robot.kill()
+    with pytest.raises(SkillError, match=r"cannot be reached|was lost"):
+        await call_for_ever(node, "/robot/get_loggers")
+    assert not node.kind_of("/robot/drive"), "nobody decides for its skills once the call has failed"
     async with asyncio.timeout(HANG_S):
-        while node.kind_of("/robot/drive"):
-            await node.changed()
         # actionlib itself would wait for its end for ever.
         with pytest.raises(SkillError, match="has left while it ran") as raised:
             await driving

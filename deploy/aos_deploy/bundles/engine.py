@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from aos_deploy.bundles.files import project_at, with_mission
+from aos_deploy.bundles.files import Planned, project_at, with_mission
 from aos_deploy.bundles.reachability import endless_findings
 from aos_deploy.places import cache_dir
 from aos_language.follow_ups import told_once
@@ -24,7 +24,7 @@ _TOLD_EVERY_S = 3.0
 
 @asynccontextmanager
 async def engine_of_bundle(
-    bundle: Path,
+    bundle: Path | Planned,
     seed: int,
     *,
     kind: BuildKind = "quick",

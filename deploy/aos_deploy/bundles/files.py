@@ -86,14 +86,17 @@ def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes
 class Planned(msgspec.Struct, frozen=True):
     """The documents that a command plans with, and what a deploy file sets for the mission.
 
-    `sources` are the files in which constraints and values stand.
+    `sources` are the files in which constraints and values stand. `horizon` is None where the environment
+    document's counts.
     """
 
+    path: Path
     files: dict[str, bytes]
     remarks: tuple[Diagnostic, ...] = ()
     constraints: tuple[Constraint, ...] = ()
     values: tuple[MissionValue, ...] = ()
     sources: tuple[Path, ...] = ()
+    horizon: int | None = None
 
 
 def planned_of(path: Path) -> Planned:
@@ -101,13 +104,15 @@ def planned_of(path: Path) -> Planned:
     deployment = deployment_at(path)
     if deployment is None:
         files, remarks = read_bundle_files(path)
-        return Planned(files, tuple(remarks))
+        return Planned(path, files, tuple(remarks))
     together = files_of_deployment(deployment)
     return Planned(
+        path,
         together.files,
         constraints=deployment.constraints,
         values=deployment.mission_values,
         sources=(deployment.path,),
+        horizon=deployment.file.solver.horizon,
     )
 
 
@@ -122,10 +127,11 @@ def deployment_at(path: Path) -> Deployment | None:
     return read_deploy_file(path) if is_deploy_file else None
 
 
-def project_at(path: Path, *, hint: str = MEND) -> tuple[Planned, Project, tuple[Diagnostic, ...]]:
-    """Reads the project of what `planned_of` reads, with warnings and remarks; DocumentError with all that is
-    wrong with its documents."""
-    planned = planned_of(path)
+def project_at(place: Path | Planned, *, hint: str = MEND) -> tuple[Planned, Project, tuple[Diagnostic, ...]]:
+    """Reads the project of what `planned_of` reads or has read, with warnings and remarks; DocumentError with
+    all that is wrong with its documents."""
+    planned = planned_of(place) if isinstance(place, Path) else place
+    path = planned.path
     loaded = load_files(planned.files, name=path.name or str(path), remarks=planned.remarks)
     if loaded.project is None:
         raise refusal(path, loaded.diagnostics, hint)

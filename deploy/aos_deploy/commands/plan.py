@@ -10,6 +10,7 @@ import typer
 
 from aos_deploy import planning_options
 from aos_deploy.bundles.ended_starts import remark_on_start
+from aos_deploy.bundles.files import planned_of
 from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, seconds
@@ -71,7 +72,8 @@ def plan(
     supposed = _suppositions(belief or ())
     if exact and deciding.policy is not None:
         raise typer.BadParameter("it excludes --exact", param_hint="--policy")
-    search = deciding.search_in(bundle)
+    planned = planned_of(bundle)
+    search = deciding.search_in(planned)
 
     async def decide(engine: Engine) -> Decision:
         with waiting("deciding") as tell:
@@ -84,7 +86,7 @@ def plan(
                 return await _exact_decision(engine, search.horizon)
             return await _searched_decision(engine, search)
 
-    decision = planning_options.with_engine(bundle, deciding.seed, given, decide)
+    decision = planning_options.with_engine(planned, deciding.seed, given, decide)
     title = "exact" if exact else "0 simulations" if deciding.policy is None else "by the policy"
     show(decision, as_json, lambda made: _print_decision(made, title))
 
@@ -176,7 +178,7 @@ def rate(
         return [count.samples / count.seconds for count in counts]
 
     given = planning_options.GivenOptions(set_values=set_values)
-    rates = planning_options.with_engine(bundle, seed, given, measure, kind="thorough")
+    rates = planning_options.with_engine(planned_of(bundle), seed, given, measure, kind="thorough")
     result = Rate(statistics.fmean(rates), statistics.stdev(rates), RATE_REPETITIONS, length_s)
     told = f"{result.mean:,.0f} samples/s (sd {result.sd:,.0f}, {RATE_REPETITIONS} x {length_s:g} s)"
     show(result, as_json, lambda _: typer.echo(told))

@@ -12,6 +12,7 @@ import msgspec
 import typer
 
 from aos_deploy import planning_options
+from aos_deploy.bundles.files import planned_of
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, finite
@@ -96,9 +97,10 @@ def simulate(
             player = _problem_player(bundle, deciding.policy, missions.step_limit, given)
             _play_problem(player, range(first, first + runs), done, with_states=states)
         else:
-            search = deciding.search_in(bundle)
+            planned = planned_of(bundle)
+            search = deciding.search_in(planned)
             play = partial(_play, search=search, limits=limits, runs=runs, with_states=states, done=done)
-            planning_options.with_engine(bundle, first, given, play)
+            planning_options.with_engine(planned, first, given, play)
     except KeyboardInterrupt:
         was_stopped = True
     if done and as_json:

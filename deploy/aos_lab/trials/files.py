@@ -7,7 +7,7 @@ from typing import Annotated, Literal, TypeVar
 import msgspec
 
 from aos_deploy.deployment.typed import read_structure
-from aos_deploy.deployment.yaml_source import YamlList, YamlMap, YamlNode, read_yaml
+from aos_deploy.deployment.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
 from aos_deploy.played.faults import PlayedFaults
 from aos_lab.trials.claim_names import ClaimNames, project_of_setting
 from aos_lab.trials.claims import Claim, has_check
@@ -40,9 +40,10 @@ class MissionTest(Part, frozen=True, kw_only=True):
 
 
 class TestFile(msgspec.Struct, frozen=True, kw_only=True):
-    """A file of mission tests, by name."""
+    """A file of mission tests, by name. `claims` are those that tests name in place of writing them."""
 
     aos: Literal[1]
+    claims: dict[str, Claim] = {}
     tests: dict[str, MissionTest]
 
 
@@ -66,7 +67,8 @@ class Experiment(msgspec.Struct, frozen=True, kw_only=True):
     """An experiment: parts by name, each played by the model and by the whole system.
 
     `counts` are patterns of steps by the name they have in the report, which counts them. `truth` is that of
-    parts which give none. With `optimum` the model's returns are compared with the best that can be had.
+    parts which give none, and `claims` those that parts name. With `optimum` the model's returns are compared
+    with the best that can be had.
     """
 
     aos: Literal[1]
@@ -75,6 +77,7 @@ class Experiment(msgspec.Struct, frozen=True, kw_only=True):
     counts: dict[str, str] = {}
     truth: str = ""
     optimum: bool = False
+    claims: dict[str, Claim] = {}
     parts: dict[str, Part]
 
 
@@ -98,6 +101,7 @@ def read_script_file(path: Path) -> ScriptFile:
 
 def _read(path: Path, kind: type[F], entries: str) -> F:
     node, findings = read_yaml(path, str(path))
+    _put_named_claims(node, _entry(node, entries), findings)
     file = read_structure(node, kind, findings) if node is not None else None
     if node is not None and file is not None:
         parts: dict[str, Part | ScriptedPart] = {**getattr(file, entries)}
@@ -116,6 +120,26 @@ def _read(path: Path, kind: type[F], entries: str) -> F:
     if file is None or findings.has_errors:
         raise DeployError(f"{path} has errors", code="AOS808", diagnostics=findings.sorted())
     return file
+
+
+def _put_named_claims(node: YamlNode | None, parts: YamlNode | None, findings: Findings) -> None:
+    """Puts the file's claims into the lists where parts name them."""
+    shared, each = _entry(node, "claims"), parts.entries.values() if isinstance(parts, YamlMap) else ()
+    known = shared.entries if isinstance(shared, YamlMap) else {}
+    for part in each:
+        listed = _entry(part, "claims")
+        if not isinstance(part, YamlMap) or not isinstance(listed, YamlList):
+            continue
+        items: list[YamlNode] = []
+        for item in listed.items:
+            if not isinstance(item, YamlScalar):
+                items.append(item)
+            elif (name := str(item.value)) in known:
+                items.append(known[name])
+            else:
+                message = f"the claim {name} is not among the `claims` of the file"
+                findings.unknown(name, known, message, item.span, "Write it there", code="AOS106")
+        part.entries["claims"] = YamlList(tuple(items), listed.span)
 
 
 def _check(part: Part, node: YamlNode | None, findings: Findings, path: str) -> None:

@@ -64,6 +64,7 @@ class RosAdapter:
         self._told_missing = ""
         self._tasks: list[asyncio.Task[None]] = []
         self._has_new_names = asyncio.Event()
+        self._serves_anew = asyncio.Lock()
         self.node: RosNode
 
     async def start(self) -> None:
@@ -101,7 +102,8 @@ class RosAdapter:
             # What changes from here on ends the waiting.
             await asyncio.sleep(0)
             try:
-                await self._serve_what_is_there()
+                async with self._serves_anew:
+                    await self._serve_what_is_there()
                 await self._listen_to_what_is_there()
                 await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)
             finally:
@@ -182,10 +184,16 @@ class RosAdapter:
     async def call(self, call: Call) -> dict[str, Any]:
         way = self._ways[call.path]
         kind = way.kind or self.node.kind_of(way.name)
-        if kind == "action":
-            return await self._run_action(call, way)
-        if kind == "service":
-            return await self._call_service(call, way)
+        try:
+            if kind == "action":
+                return await self._run_action(call, way)
+            if kind == "service":
+                return await self._call_service(call, way)
+        except SkillError:
+            # Whoever hears of it decides for no skill of a node that has left.
+            async with self._serves_anew:
+                await self._serve_what_is_there()
+            raise
         raise SkillError(self._why_missing(call.path, way, kind), code="AOS505")
 
     def still_moving(self) -> str:

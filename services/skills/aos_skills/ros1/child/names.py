@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import threading
 import time
 from urllib.parse import urlparse
 
@@ -20,6 +21,7 @@ class Names:
 
     def __init__(self, channel: Channel, own_node: str) -> None:
         self._channel = channel
+        self._looking = threading.Lock()
         self._own_node = own_node
         self._master = rosgraph.Master("/aos")
         self._types: dict[tuple[str, str], str] = {}
@@ -29,11 +31,16 @@ class Names:
     def follow(self) -> None:
         """Tells every change, for ever: types by the names of services, actions and topics, and the nodes."""
         while True:
+            self.look()
+            time.sleep(POLL_S)
+
+    def look(self) -> None:
+        """Looks once, and tells what has changed."""
+        with self._looking:
             names = self._names()
             if names != self._said:
                 self._said = names
                 self._channel.send(event="names", **names)
-            time.sleep(POLL_S)
 
     def advice(self, name: str) -> str:
         """Returns what to do where the node of a service or an action does not answer."""
