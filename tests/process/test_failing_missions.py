@@ -1,6 +1,6 @@
 """The claims of a mission where skills fail, and with what it goes on: docs/when-a-skill-fails.md."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import pytest
 from models import built_text, engine_of_text
@@ -61,9 +61,6 @@ __reward = is_there ? -2 : -20;
 def fetch(**skills: str) -> dict[str, str]:
     """The tutorial's documents: the thing is on one of two sides."""
     return {"fetch.ef": SHELF, **{f"{name}.sd": text for name, text in skills.items()}}
-
-
-Build = Callable[[Mapping[str, str]], BuiltModel]
 
 
 @pytest.fixture

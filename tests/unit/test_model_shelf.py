@@ -167,7 +167,6 @@ class _World:
                 if takeover.model.revision > self.mapped:
                     self.faults.append(f"revision {takeover.model.revision} without the middleware")
                 self.taken.append(takeover.row.by)
-                self.taken.append(takeover.row.by)
                 running = takeover.model
             self.running, self.deciding = running.revision, running.engine
             self._check(running, past)
