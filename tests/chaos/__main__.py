@@ -22,7 +22,7 @@ def main() -> int:
     options = parser.parse_args()
     counts = {part: getattr(options, part) for part in PARTS}
     if not options.again and not any(counts.values()):
-        counts = dict.fromkeys(PARTS, 1) | {"kills": 24, "freezes": 6, "cancels": 2, "twins": 8}
+        counts = dict.fromkeys(PARTS, 1) | {"kills": 24, "freezes": 6, "cancels": 2}
     names = options.again or names_of(counts, options.seed)
     with tempfile.TemporaryDirectory(prefix="aos-chaos-") as folder:
         compile_bundles(Path(folder))

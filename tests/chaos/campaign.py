@@ -12,9 +12,7 @@ from pathlib import Path
 from tests.chaos.disturbed import FREEZES_OF_A_MISSION, KILLS_OF_A_MISSION, cancelled, disturbed
 from tests.chaos.failing import WRITES, failing, refused
 from tests.chaos.judged import Report
-from tests.chaos.twins import twins
 
-from aos_deploy.places import cache_dir
 from aos_deploy.terminal import progress
 from aos_runtime.failpoints import FAILPOINTS
 
@@ -25,7 +23,6 @@ PARTS = {
     "full": "times that the disk is full at each write",
     "readonly": "times that it is read-only at each write",
     "cancels": "aos-up killed in mid-motion",
-    "twins": "pairs of engines with the same outcomes, of which one is killed",
 }
 """The parts of a campaign, each with what is counted."""
 
@@ -41,8 +38,7 @@ def names_of(counts: Mapping[str, int], seed: int) -> list[str]:
         names += [f"failpoint:{place}:{seed + number}" for place in FAILPOINTS]
     for how in ("full", "readonly"):
         names += [f"{how}:{place}:{time}" for _ in range(counts[how]) for place, time in WRITES]
-    for how, part in (("cancel", "cancels"), ("twins", "twins")):
-        names += [f"{how}:{seed + number}" for number in range(counts[part])]
+    names += [f"cancel:{seed + number}" for number in range(counts["cancels"])]
     return names
 
 
@@ -65,8 +61,6 @@ def _run(folder: Path, name: str, what: str, more: list[str]) -> Report:
         return failing(folder, name, more[0], int(more[1]))
     if what in ("full", "readonly"):
         return refused(folder, name, more[0], int(more[1]), what)
-    if what == "twins":
-        return twins(folder, name, int(more[0]), cache_dir())
     if what == "cancel":
         return cancelled(folder, name, int(more[0]))
     return disturbed(folder, name, int(more[0]), what)
@@ -98,7 +92,7 @@ def table(reports: list[Report]) -> str:
     beliefs = sum(report.beliefs for report in reports)
     lines.append(
         f"\n{good} of {len(reports)} runs kept what is promised; {activations} activations; "
-        f"{beliefs} beliefs had the digest of their replay or their twin."
+        f"{beliefs} beliefs had the digest of their replay."
     )
     lines += [f"again: python -m tests.chaos --again {report.name}" for report in reports if report.faults]
     return "\n".join(lines)

@@ -2,10 +2,10 @@ import contextlib
 import json
 import os
 import re
+import shutil
 import signal
 import socket
 import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -133,7 +133,6 @@ class Mission(NamedTuple):
     status: int
     run: Path
     followed: list[dict[str, Any]]
-    example: str
 
 
 @pytest.fixture(scope="module")
@@ -142,15 +141,10 @@ def mission(deploy_file: Path) -> Mission:
         running.until("decision")
         run = latest(deploy_file)
         follow = [BIN / "aos", "decisions", "--json", "--runs", run.parent]
-        example = [sys.executable, ROOT / "docs/examples/follow_decisions.py", run]
-        with (
-            subprocess.Popen(follow, stdout=subprocess.PIPE, text=True) as follower,
-            subprocess.Popen(example, stdout=subprocess.PIPE, text=True) as script,
-        ):
+        with subprocess.Popen(follow, stdout=subprocess.PIPE, text=True) as follower:
             status = running.rest()
             lines, _ = follower.communicate(timeout=HANG_S)
-            printed, _ = script.communicate(timeout=HANG_S)
-    return Mission(running, status, run, [json.loads(line) for line in lines.splitlines()], printed)
+    return Mission(running, status, run, [json.loads(line) for line in lines.splitlines()])
 
 
 def test_a_mission_ends_in_a_defined_way(mission: Mission):
@@ -191,12 +185,6 @@ def test_who_joins_late_has_every_decision(mission: Mission):
         journaled = [json.loads(row.payload) for row in journal.rows("decision")]
     assert mission.followed == journaled
     assert [record["sequence"] for record in journaled] == list(range(len(journaled)))
-
-
-def test_the_example_script_sees_the_same(mission: Mission):
-    last_step = mission.followed[-1]["step"]
-    assert mission.example.startswith("step 1: ")
-    assert f"step {last_step}: observed " in mission.example
 
 
 def test_a_finished_mission_can_be_read(mission: Mission):
@@ -302,31 +290,12 @@ def test_a_path_that_nobody_serves_ends_the_start_and_is_named(deploy_file: Path
     assert "aos-up --model" in result.text
 
 
-@pytest.mark.parametrize(
-    "mistakes",
-    [
-        [("pick.sd", "__reward = -2;", "__reward = minus_two;", "pick.sd:")],
-        [
-            ("pick.sd", "state.easy_can_at", "state.easy_cann_at", "pick.sd:4:27"),
-            ("pick.am", "__input.success", "__input.success(", "pick.am:"),
-            ("armadillo.ef", "project: armadillo", "projekt: armadillo", "armadillo.ef:1"),
-        ],
-    ],
-    ids=["of the compiler", "of the registry"],
-)
-def test_mistakes_in_documents_are_shown_at_their_places(
-    deploy_file: Path, tmp_path, mistakes: list[tuple[str, str, str, str]]
-):
-    bundle = tmp_path / "bundle"
-    bundle.mkdir()
-    for document in (BUNDLES / "armadillo-finer").iterdir():
-        (bundle / document.name).write_bytes(document.read_bytes())
-    for file, old, new, _ in mistakes:
-        text = (bundle / file).read_text()
-        assert old in text
-        (bundle / file).write_text(text.replace(old, new, 1))
+def test_a_mistake_that_the_compiler_finds_is_shown_at_its_place(deploy_file: Path, tmp_path):
+    bundle = shutil.copytree(BUNDLES / "armadillo-finer", tmp_path / "bundle")
+    text = (bundle / "pick.sd").read_text()
+    assert "__reward = -2;" in text
+    (bundle / "pick.sd").write_text(text.replace("__reward = -2;", "__reward = minus_two;", 1))
     changed = deploy_file.read_text().replace(str(BUNDLES / "armadillo-finer"), str(bundle))
     result = refused(deploy_file, changed)
     assert result.status == 1
-    for *_, place in mistakes:
-        assert place in result.text
+    assert "pick.sd:" in result.text

@@ -358,25 +358,6 @@ def test_documents_that_cannot_be_played_are_told_at_once(project: Path):
     assert "fetch.ef:" in done.stderr
 
 
-def test_the_end_of_a_program_in_mid_mission_is_in_the_summary(project: Path):
-    robot = project / "fetch_robot.py"
-    text = robot.read_text()
-    hanging = "tell(f\"progress/{path.strip('/')}\""
-    assert hanging in text
-    robot.write_text(text.replace(hanging, "sim.send(b'x'); sim.recv(1)\n        " + hanging))
-    simulator = project / "sim.py"
-    simulator.write_text(
-        SIMULATOR.replace("threading.Event().wait()", "robot.recv(1)\n    raise SystemExit(5)")
-    )
-    done = up()
-    assert done.returncode == 7, done.stdout + done.stderr
-    assert "sim ended: exit status 5; the run ends" in done.stdout
-    assert "AOS804: sim ended unexpectedly: exit status 5" in done.stderr
-    summary = json.loads(Path("runs/latest/summary.json").read_text())
-    assert (summary["ending"], summary["exit_code"]) == ("fault", 7)
-    assert [(end["name"], end["how"]) for end in summary["process_ends"]] == [("sim", "exit status 5")]
-
-
 def test_an_interface_that_the_robot_defines_otherwise_ends_the_start_at_once(project: Path):
     robot = project / "fetch_robot.py"
     lack = 'token = f"aos/{ROBOT}/lack/{ADAPTER}/AOS509%3A it is no Trigger/{short}"'

@@ -53,7 +53,9 @@ async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_s
         assert system.until("mission", phase="ended")["ending"] == "step_limit"
         code, _, error = system.aos("mission", "hold")
         assert "AOS517: no mission runs" in error
-        assert "\nstep 2: operator chose open(door=right_door)\n" in followed(system.run).stdout
+        told = followed(system.run).stdout
+        assert "\nstep 2: operator chose open(door=right_door)\n" in told
+        assert "\nstep 3: observed " in told
         assert system.interrupt() == 0
         over = followed(system.run)
         assert (over.returncode, over.stderr[:3]) == (1, "AOS")

@@ -31,15 +31,6 @@ def test_one_may_hold_the_environment_alone(tmp_path):
     assert together.bundles == {"yard.ef": bundles[0], "push.sd": bundles[1]}
 
 
-def test_a_later_document_replaces_the_one_of_its_kind_and_name_whatever_the_file_is_called(tmp_path):
-    first = bundle(tmp_path, "first", yard_ef=ENVIRONMENT, push_sd=SKILL)
-    second = bundle(tmp_path, "second", other_ef=ENVIRONMENT.replace("3", "7"))
-    together = files_of_bundles((first, second), ())
-    assert sorted(together.files) == ["other.ef", "push.sd"]
-    project = load_files(together.files, name="yard.yaml").project
-    assert project.environment.horizon == 7
-
-
 def test_a_deploy_file_stands_for_its_bundles_and_what_it_sets(tmp_path):
     bundle(tmp_path, "world", yard_ef=ENVIRONMENT + "\nmission_parameter: int laps\ndefault_value: 2\n")
     bundle(tmp_path, "skills", push_sd=SKILL)
@@ -59,9 +50,6 @@ def test_a_folder_with_one_deploy_file_stands_for_it(tmp_path):
     bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
     (tmp_path / "yard.yaml").write_text("aos: 1\nrobot: yard\nbundles: [yard]\n")
     assert sorted(planned_of(tmp_path).files) == ["push.sd", "yard.ef"]
-    (tmp_path / "other.yaml").write_text("aos: 1\nrobot: yard\nbundles: [yard]\n")
-    with pytest.raises(DeployError, match="has 2 deploy files"):
-        planned_of(tmp_path)
 
 
 def test_commands_on_documents_take_the_bundles_of_a_deploy_file_as_one(tmp_path):
