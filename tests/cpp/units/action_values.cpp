@@ -4,7 +4,7 @@
 #include "check.hpp"
 #include "numbers/exact.hpp"
 
-namespace action_values_tests {
+namespace units::action_values_tests {
 
 TEST("A value is in the middle of its own bounds, and none is above that of the choice") {
   aos::List<aos::ActionEstimate> estimates(3);

@@ -6,12 +6,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace belief_tests {
-
-using units::Problem;
-using units::TableModel;
-using units::Belief;
-using units::initial_belief;
+namespace units::belief_tests {
 
 double weight_of(const Belief& belief, std::uint32_t state) {
   double weight = 0;
@@ -43,10 +38,10 @@ TEST("What cannot be observed leaves an empty belief, and has probability 0") {
 }
 
 TEST("States that come to be equal are one particle with both weights") {
-  Problem problem = units::world(3, 1, 0.9);
+  Problem problem = world(3, 1, 0.9);
   problem.starts = {{0, 0.25}, {1, 0.75}};
-  units::row(problem, 0, 0) = {{0.5, 2, 0, 0}, {0.5, 1, 0, 0}};
-  units::row(problem, 1, 0) = {{1.0, 2, 0, 0}};
+  row(problem, 0, 0) = {{0.5, 2, 0, 0}, {0.5, 1, 0, 0}};
+  row(problem, 1, 0) = {{1.0, 2, 0, 0}};
   aos::Sampler random{1};
   const Belief next = initial_belief(problem).predicted(0, random);
   EXPECT_EQUAL(next.particles().size(), 2u);
@@ -55,10 +50,10 @@ TEST("States that come to be equal are one particle with both weights") {
 }
 
 TEST("Observations come with their probabilities, the likeliest first") {
-  Problem problem = units::world(2, 1, 0.9);
+  Problem problem = world(2, 1, 0.9);
   problem.starts = {{0, 0.25}, {1, 0.75}};
   problem.sensings = {{{3, 0.5}, {4, 0.5}}, {{4, 0.9}, {-1, 0.1}}};
-  units::row(problem, 1, 0) = {{1.0, 1, 1, 0}};
+  row(problem, 1, 0) = {{1.0, 1, 1, 0}};
   aos::Sampler random{1};
   const auto odds = initial_belief(problem).observations(0, random);
   EXPECT_EQUAL(odds.size(), 3u);
@@ -87,7 +82,7 @@ TEST("A mixture has the weights of both beliefs in their shares") {
 }
 
 TEST("Draws from a belief follow its weights") {
-  Problem problem = units::world(3, 1, 0.9);
+  Problem problem = world(3, 1, 0.9);
   problem.starts = {{0, 0.2}, {1, 0.3}, {2, 0.5}};
   const Belief belief = initial_belief(problem);
   aos::Sampler random{7};
@@ -99,10 +94,9 @@ TEST("Draws from a belief follow its weights") {
 }
 
 TEST("Thinning out keeps heavy states as they are, tells what it drops, and changes no weight on average") {
-  Problem problem = units::world(200, 1, 0.9);
+  Problem problem = world(200, 1, 0.9);
   aos::List<TableModel::State> states;
-  problem.starts.clear();
-  for (std::uint32_t state = 0; state < 200; ++state) problem.starts.push_back({state, 1.0 / 200});
+  start_evenly(problem, 0, 200);
   const Belief initial = initial_belief(problem);  // outlives the loop over its particles
   aos::Sampler random{3};
   for (const auto& particle : initial.particles()) states.push_back(particle.state);
@@ -154,9 +148,8 @@ TEST("Thinning out does not agree with a pattern in the order of the states") {
 }
 
 TEST("States drawn by their weights do not agree with a pattern in their order") {
-  Problem problem = units::world(4000, 1, 0.9);
-  problem.starts.clear();
-  for (std::uint32_t state = 0; state < 4000; ++state) problem.starts.push_back({state, 1.0 / 4000});
+  Problem problem = world(4000, 1, 0.9);
+  start_evenly(problem, 0, 4000);
   const Belief belief = initial_belief(problem);
   aos::Sampler random{6};
   int even = 0;
@@ -168,7 +161,7 @@ TEST("States drawn by their weights do not agree with a pattern in their order")
 
 TEST("The error bound holds how far a belief with too many states is from the exact one") {
   constexpr std::uint32_t many = 120'000;
-  Problem problem = units::world(many, 1, 0.9);
+  Problem problem = world(many, 1, 0.9);
   problem.starts.clear();
   double total = 0;
   for (std::uint32_t state = 0; state < many; ++state) {

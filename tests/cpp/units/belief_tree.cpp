@@ -8,10 +8,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace belief_tree_tests {
-
-using units::Problem;
-using units::TableModel;
+namespace units::belief_tree_tests {
 
 // After action 0 a text of eight letters is observed: each is an `a` with three quarters in even states and a quarter
 // in odd ones.
@@ -46,22 +43,20 @@ using Belief = aos::Belief<Whispering>;
 using Space = aos::StateSpace<Whispering>;
 
 Belief initial_belief(const Problem& problem) {
-  Whispering::take(problem);
   Whispering::noise = Whispering::Noise::own;
-  aos::Sampler random{1};
-  return Belief::initial(random);
+  return units::initial_belief<Whispering>(problem);
 }
 
 // Two sides that nothing changes. Action 0 listens for 1, action 1 waits. Actions 2 and 3 end the mission: they earn 10
 // on their side, and lose 100 on the other.
 Problem doors() {
-  Problem problem = units::world(3, 4, 0.95);
+  Problem problem = world(3, 4, 0.95);
   problem.starts = {{0, 0.5}, {1, 0.5}};
   problem.endings[2] = 1;
   for (std::uint32_t side = 0; side < 2; ++side) {
-    units::row(problem, side, 0) = {{1.0, side, 0, -1}};
+    row(problem, side, 0) = {{1.0, side, 0, -1}};
     for (std::uint32_t door = 0; door < 2; ++door) {
-      units::row(problem, side, door + 2) = {{1.0, 2, 0, door == side ? 10.0 : -100.0}};
+      row(problem, side, door + 2) = {{1.0, 2, 0, door == side ? 10.0 : -100.0}};
     }
   }
   return problem;

@@ -4,16 +4,15 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace budgets_tests {
+namespace units::budgets_tests {
 
 using aos::PlannerKind;
-using units::TableModel;
 
 constexpr int horizon = 10;
 constexpr std::uint64_t simulations = 2000;
 
 // A world whose states cannot be listed, and which counts its steps.
-struct Unlisted : TableModel {
+struct Unlisted : OwnRollouts<Unlisted> {
   inline static std::uint64_t steps = 0;
   inline static std::uint64_t with_texts = 0;  // whose texts are remembered
 
@@ -24,12 +23,6 @@ struct Unlisted : TableModel {
   }
   static aos::Step step(State&, int, aos::Enumerator&) { throw aos::NotEnumerable{"there is a continuous draw"}; }
   static aos::Step step(State&, int, aos::DirectedDraws&) { throw aos::NotEnumerable{"there is a continuous draw"}; }
-  static double rollout(const State& state, int& left, aos::Sampler& random) {
-    return aos::rollout<Unlisted>(state, left, random);
-  }
-  static void rollout_odds(const State& state, double* odds, aos::Sampler& random) {
-    aos::rollout_odds<Unlisted>(state, odds, action_count(), random);
-  }
 };
 
 // The steps that a planner takes of a prepared search.
@@ -45,10 +38,8 @@ double steps_of(aos::Planner<Unlisted>& planner, const aos::Belief<Unlisted>& be
 }
 
 TEST("POMCP and DESPOT take as many steps of a model that cannot be listed, up to a factor of three, and remember no texts") {
-  const units::Problem tiger = units::tiger();
-  Unlisted::take(tiger);
-  aos::Sampler random{1};
-  const auto belief = aos::Belief<Unlisted>::drawn(random);
+  const Problem tiger = units::tiger();
+  const auto belief = drawn_belief<Unlisted>(tiger);
   aos::StateSpace<Unlisted> space;
   aos::MdpValues<Unlisted> values{space};
   aos::GroupMissions<Unlisted> missions;
@@ -63,10 +54,8 @@ TEST("POMCP and DESPOT take as many steps of a model that cannot be listed, up t
 }
 
 TEST("No planner takes much more than its budget in simulations, and POMCP takes all of it") {
-  const units::Problem problem = units::corridor_with_exits(30, 3);
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  const auto belief = aos::Belief<TableModel>::initial(random);
+  const Problem problem = corridor_with_exits(30, 3);
+  const Belief belief = initial_belief(problem);
   for (const PlannerKind kind : {PlannerKind::pomcp, PlannerKind::despot, PlannerKind::sarsop, PlannerKind::automatic}) {
     aos::Planners<TableModel> planner;
     aos::Sampler own{1};
@@ -78,13 +67,12 @@ TEST("No planner takes much more than its budget in simulations, and POMCP takes
 
 // Searches from the start of a corridor, one after the other.
 struct Corridor {
-  units::Problem problem;
+  Problem problem;
   aos::Sampler random{1};
-  aos::Belief<TableModel> belief;
+  Belief belief;
   aos::Planners<TableModel> planner;
 
-  Corridor(int length, int exits)
-      : problem(units::corridor_with_exits(length, exits)), belief((TableModel::take(problem), aos::Belief<TableModel>::initial(random))) {}
+  Corridor(int length, int exits) : problem(corridor_with_exits(length, exits)), belief(initial_belief(problem)) {}
 
   std::uint64_t search(PlannerKind kind, std::uint64_t count) {
     return planner.search(kind, belief, {.simulations = count}, horizon, random);

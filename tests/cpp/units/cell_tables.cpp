@@ -4,7 +4,7 @@
 #include "aos/draws/random.hpp"
 #include "check.hpp"
 
-namespace cell_tables_tests {
+namespace units::cell_tables_tests {
 
 struct State {
   int small = 0;

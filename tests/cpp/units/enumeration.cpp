@@ -7,7 +7,7 @@
 #include "aos/model/support.hpp"
 #include "check.hpp"
 
-namespace enumeration_tests {
+namespace units::enumeration_tests {
 
 using namespace aos;
 

@@ -3,7 +3,7 @@
 
 #include "check.hpp"
 
-namespace faults_tests {
+namespace units::faults_tests {
 
 // The answer where work throws this while document code of that number runs; 0 stands for none.
 template <class Thrown>

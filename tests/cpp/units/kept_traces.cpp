@@ -5,7 +5,7 @@
 #include "aos/belief/history.hpp"
 #include "check.hpp"
 
-namespace kept_traces_tests {
+namespace units::kept_traces_tests {
 
 using namespace aos;
 

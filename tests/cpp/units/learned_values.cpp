@@ -4,19 +4,16 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace learned_values_tests {
-
-using units::TableModel;
-using Belief = aos::Belief<TableModel>;
+namespace units::learned_values_tests {
 
 constexpr int horizon = 60;
 
 // Values of a problem that are learned from its first belief.
 struct Learned {
-  explicit Learned(const units::Problem& problem, int decisions = horizon, std::uint64_t seed = 1)
+  explicit Learned(const Problem& problem, int decisions = horizon, std::uint64_t seed = 1)
       : random{seed}, belief{taken(problem, random)}, is_usable{values.prepare(belief, decisions, random)} {}
 
-  static Belief taken(const units::Problem& problem, aos::Sampler& random) {
+  static Belief taken(const Problem& problem, aos::Sampler& random) {
     TableModel::take(problem);
     return Belief::initial(random);
   }
@@ -29,7 +26,7 @@ struct Learned {
 };
 
 TEST("Values are learned behind an exit that is open everywhere") {
-  const units::Problem problem = units::corridor_with_exits(40, 3);
+  const Problem problem = corridor_with_exits(40, 3);
   Learned learned{problem};
   EXPECT(learned.is_usable);
   EXPECT_NEAR(learned.values.value(learned.start(), horizon), 10, 0.5);
@@ -40,20 +37,20 @@ TEST("Values are learned behind an exit that is open everywhere") {
 }
 
 // Six lamps, of which each action switches one on: it earns 1 where it was off. The state's number has a bit each.
-units::Problem lamps(double discount) {
+Problem lamps(double discount) {
   constexpr std::uint32_t states = 64;
-  units::Problem problem = units::world(states, 6, discount);
+  Problem problem = world(states, 6, discount);
   for (std::uint32_t state = 0; state < states; ++state) {
     for (std::uint32_t lamp = 0; lamp < 6; ++lamp) {
       const bool is_on = state >> lamp & 1;
-      units::row(problem, state, lamp) = {{1.0, state | 1u << lamp, 0, is_on ? 0.0 : 1.0}};
+      row(problem, state, lamp) = {{1.0, state | 1u << lamp, 0, is_on ? 0.0 : 1.0}};
     }
   }
   return problem;
 }
 
 TEST("Values of a corridor are the discounted way to its prize, and 0 without decisions to go") {
-  const units::Problem problem = units::corridor(40, 0.95);
+  const Problem problem = corridor(40, 0.95);
   Learned learned{problem};
   EXPECT(learned.is_usable);
   TableModel::State state = learned.start();
@@ -66,7 +63,7 @@ TEST("Values of a corridor are the discounted way to its prize, and 0 without de
 }
 
 TEST("An action is worth its reward and what the next state is worth, and nothing where it ends") {
-  const units::Problem problem = units::corridor(40, 0.95);
+  const Problem problem = corridor(40, 0.95);
   Learned learned{problem};
   TableModel::State state = learned.start();
   for (int cell = 0; cell < 38; ++cell) TableModel::step(state, 0, learned.random);
@@ -79,7 +76,7 @@ TEST("An action is worth its reward and what the next state is worth, and nothin
 }
 
 TEST("The same seed learns the same values") {
-  const units::Problem problem = lamps(0.9);
+  const Problem problem = lamps(0.9);
   const Learned first{problem, 12, 7};
   const Learned again{problem, 12, 7};
   EXPECT_EQUAL(first.values.value(first.start(), 12), again.values.value(again.start(), 12));
@@ -87,7 +84,7 @@ TEST("The same seed learns the same values") {
 }
 
 TEST("Values are no use where rollouts earn as much: the best action is the one that earns most at once") {
-  units::Problem problem = units::world(8, 2, 0.1);
+  Problem problem = world(8, 2, 0.1);
   for (std::uint32_t state = 0; state < 8; ++state) {
     for (std::uint32_t action = 0; action < 2; ++action) {
       auto& row = units::row(problem, state, action);
@@ -101,7 +98,7 @@ TEST("Values are no use where rollouts earn as much: the best action is the one 
 }
 
 TEST("Nothing is learned of a belief that has ended, and once of any other") {
-  const units::Problem problem = units::corridor(1, 0.95);
+  const Problem problem = corridor(1, 0.95);
   TableModel::take(problem);
   aos::Sampler random{1};
   const Belief initial = Belief::initial(random);

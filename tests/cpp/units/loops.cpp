@@ -5,7 +5,7 @@
 #include "aos/draws/observed_numbers.hpp"
 #include "check.hpp"
 
-namespace loops_tests {
+namespace units::loops_tests {
 
 using aos::DirectedDraws;
 using aos::DrawingLoop;

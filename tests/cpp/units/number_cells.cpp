@@ -6,7 +6,7 @@
 #include "check.hpp"
 #include "point_based/online.hpp"
 
-namespace number_cells_tests {
+namespace units::number_cells_tests {
 
 namespace point_based = aos::point_based;
 using aos::NumberCells;
@@ -192,4 +192,4 @@ TEST("What is earned over cells is below what numbers are worth, near it with ma
   EXPECT(before >= 0.95 * best);
 }
 
-}  // namespace number_cells_tests
+}

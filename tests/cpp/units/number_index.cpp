@@ -4,7 +4,7 @@
 #include "aos/base/mixed.hpp"
 #include "check.hpp"
 
-namespace number_index_tests {
+namespace units::number_index_tests {
 
 struct Words {
   aos::List<std::string> all;

@@ -4,10 +4,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace observation_doubts_tests {
-
-using units::Problem;
-using units::TableModel;
+namespace units::observation_doubts_tests {
 
 // A tree whose root has one action, after which each observation came so often. The rest of its 100 visits has ended.
 double told(const aos::List<std::uint32_t>& visits, double doubt_of_visit) {
@@ -30,16 +27,13 @@ TEST("An observation that is certain in each state tells its whole entropy, and 
 TEST("That a mission goes on tells something, too") { EXPECT_NEAR(told({50}, 0), std::log(2), 1e-12); }
 
 TEST("What a known state leaves open is the entropy of its observations, and an end is one of them") {
-  Problem problem = units::world(2, 3, 0.9);
+  Problem problem = world(2, 3, 0.9);
   problem.endings[1] = 1;
-  units::row(problem, 0, 0) = {{0.5, 0, 0, 1.0}, {0.5, 0, 0, -1.0}};
+  row(problem, 0, 0) = {{0.5, 0, 0, 1.0}, {0.5, 0, 0, -1.0}};
   problem.sensings.push_back({{0, 0.25}, {1, 0.75}});
-  units::row(problem, 0, 1) = {{1.0, 0, 1, 0.0}};
-  units::row(problem, 0, 2) = {{0.5, 0, 0, 0.0}, {0.5, 1, 0, 0.0}};
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  TableModel::State state{};
-  TableModel::initial(state, random);
+  row(problem, 0, 1) = {{1.0, 0, 1, 0.0}};
+  row(problem, 0, 2) = {{0.5, 0, 0, 0.0}, {0.5, 1, 0, 0.0}};
+  const TableModel::State state = first_state(problem);
   aos::ObservationDoubts<TableModel> doubts;
   EXPECT_NEAR(doubts.of(state, 0).value(), 0, 1e-12);
   EXPECT_NEAR(doubts.of(state, 1).value(), 0.25 * std::log(4) + 0.75 * std::log(4.0 / 3), 1e-12);

@@ -7,20 +7,15 @@
 #include "numbers/observable_values.hpp"
 #include "worlds.hpp"
 
-namespace option_policy_tests {
-
-using units::Problem;
-using units::TableModel;
-using units::Belief;
-using units::initial_belief;
+namespace units::option_policy_tests {
 
 constexpr int look = 0, go = 1, take = 2;
 
 // Two rooms, in each of which a thing may be. To look tells of the room where the robot is. To take the thing earns 10, and 6 is lost
 // where there is none. A state has a bit for the room, two for the things, and two for those that are taken.
 Problem two_rooms(double first, double second) {
-  Problem problem = units::world(32, 3, 0.95);
-  units::hear(problem, 0.85);
+  Problem problem = world(32, 3, 0.95);
+  hear(problem, 0.85);
   problem.starts.clear();
   for (const std::uint32_t one : {0u, 1u}) {
     for (const std::uint32_t other : {0u, 1u}) {
@@ -30,9 +25,9 @@ Problem two_rooms(double first, double second) {
   for (std::uint32_t state = 0; state < 32; ++state) {
     const std::uint32_t room = state & 1, thing = 2u << room, taken = 8u << room;
     const bool is_there = (state & thing) && !(state & taken);
-    units::row(problem, state, look) = {{1.0, state, is_there ? 1u : 2u, -0.2}};
-    units::row(problem, state, go) = {{1.0, state ^ 1u, 0, -1}};
-    units::row(problem, state, take) = {{1.0, is_there ? state | taken : state, 0, is_there ? 10.0 : -6.0}};
+    row(problem, state, look) = {{1.0, state, is_there ? 1u : 2u, -0.2}};
+    row(problem, state, go) = {{1.0, state ^ 1u, 0, -1}};
+    row(problem, state, take) = {{1.0, is_there ? state | taken : state, 0, is_there ? 10.0 : -6.0}};
   }
   return problem;
 }
@@ -80,18 +75,17 @@ TEST("A look that had no time is gone on with, whatever it takes") {
 // A thing is in one of 15 rooms, but not in the first one, where the robot is. No look pays for itself, and each step costs 1.
 TEST("A robot looks elsewhere before it looks for ever where it knows that nothing is") {
   constexpr std::uint32_t rooms = 15, end = rooms * rooms;
-  Problem problem = units::world(end + 2, 3, 0.98);
+  Problem problem = world(end + 2, 3, 0.98);
   problem.endings[end] = 1;
   problem.endings[end + 1] = 2;
   problem.horizon = 40;
-  units::hear(problem, 0.95);
-  problem.starts.clear();
-  for (std::uint32_t thing = 1; thing < rooms; ++thing) problem.starts.push_back({thing, 1.0 / (rooms - 1)});
+  hear(problem, 0.95);
+  start_evenly(problem, 1, rooms);
   for (std::uint32_t state = 0; state < end; ++state) {
     const std::uint32_t room = state / rooms, thing = state % rooms;
-    units::row(problem, state, look) = {{1.0, state, room == thing ? 1u : 2u, -1}};
-    units::row(problem, state, go) = {{1.0, (room + 1) % rooms * rooms + thing, 0, -1}};
-    units::row(problem, state, take) = {{1.0, room == thing ? end : end + 1, 0, room == thing ? 20.0 : -20.0}};
+    row(problem, state, look) = {{1.0, state, room == thing ? 1u : 2u, -1}};
+    row(problem, state, go) = {{1.0, (room + 1) % rooms * rooms + thing, 0, -1}};
+    row(problem, state, take) = {{1.0, room == thing ? end : end + 1, 0, room == thing ? 20.0 : -20.0}};
   }
   const auto estimates = told_by_options(problem, initial_belief(problem));
   EXPECT(estimates[go].q > estimates[look].q);
@@ -100,19 +94,18 @@ TEST("A robot looks elsewhere before it looks for ever where it knows that nothi
 // A thing is in one of 48 places, of which a scan covers twelve. No scan makes any place worth a try. Another test tells for less what is of no use.
 TEST("A scan counts for the tests that it makes cheaper, and what is of no use counts nothing") {
   constexpr std::uint32_t places = 48, scans = 4, of_no_use = scans, first_peek = scans + 1, first_take = first_peek + places;
-  Problem problem = units::world(2 * places + 1, first_take + places, 0.98);
+  Problem problem = world(2 * places + 1, first_take + places, 0.98);
   problem.endings[2 * places] = 1;
   problem.horizon = 60;
-  units::hear(problem, 0.9);
-  problem.starts.clear();
+  hear(problem, 0.9);
+  start_evenly(problem, 0, 2 * places);
   for (std::uint32_t state = 0; state < 2 * places; ++state) {
     const std::uint32_t thing = state / 2;
-    problem.starts.push_back({state, 0.5 / places});
-    for (std::uint32_t scan = 0; scan < scans; ++scan) units::row(problem, state, scan) = {{1.0, state, thing % scans == scan ? 1u : 2u, -1}};
-    units::row(problem, state, of_no_use) = {{1.0, state, 1 + state % 2, -0.1}};
+    for (std::uint32_t scan = 0; scan < scans; ++scan) row(problem, state, scan) = {{1.0, state, thing % scans == scan ? 1u : 2u, -1}};
+    row(problem, state, of_no_use) = {{1.0, state, 1 + state % 2, -0.1}};
     for (std::uint32_t place = 0; place < places; ++place) {
-      units::row(problem, state, first_peek + place) = {{1.0, state, place == thing ? 1u : 2u, -0.5}};
-      units::row(problem, state, first_take + place) = {{1.0, place == thing ? 2 * places : state, 0, place == thing ? 30.0 : -8.0}};
+      row(problem, state, first_peek + place) = {{1.0, state, place == thing ? 1u : 2u, -0.5}};
+      row(problem, state, first_take + place) = {{1.0, place == thing ? 2 * places : state, 0, place == thing ? 30.0 : -8.0}};
     }
   }
   const auto estimates = told_by_options(problem, initial_belief(problem));
@@ -123,12 +116,12 @@ TEST("A scan counts for the tests that it makes cheaper, and what is of no use c
 // A machine earns at each step, and all that changes it costs more.
 TEST("What a step earns that changes nothing is told apart from what ways earn") {
   for (const double idle : {0.5, 0.0}) {
-    Problem problem = units::world(2, 5, 0.95);
+    Problem problem = world(2, 5, 0.95);
     problem.starts = {{0, 0.5}, {1, 0.5}};
     for (std::uint32_t state = 0; state < 2; ++state) {
       for (int action = 0; action < 5; ++action) {
         const bool is_idle = action < 2;
-        units::row(problem, state, action) = {{1.0, is_idle ? state : 1 - state, 0, is_idle ? idle : action == 2 ? 1.0 : -1.0}};
+        row(problem, state, action) = {{1.0, is_idle ? state : 1 - state, 0, is_idle ? idle : action == 2 ? 1.0 : -1.0}};
       }
     }
     aos::Sampler random{1};
@@ -141,13 +134,13 @@ TEST("What a step earns that changes nothing is told apart from what ways earn")
 
 // Two jobs, each done by its action, which earns 20; the mission ends when both are done. A state has a bit for each.
 TEST("A reward that an action has earned does not count again where the mission may end with it") {
-  Problem problem = units::world(4, 2, 0.95);
+  Problem problem = world(4, 2, 0.95);
   problem.starts = {{0, 0.4}, {1, 0.3}, {2, 0.3}};
   problem.values = {0, 0, 1, 0, 0, 1, 1, 1};
   problem.endings[3] = 1;
   for (std::uint32_t state = 0; state < 3; ++state) {
     for (const std::uint32_t job : {0u, 1u}) {
-      if (!(state & 1u << job)) units::row(problem, state, job) = {{1.0, state | 1u << job, 0, 20}};
+      if (!(state & 1u << job)) row(problem, state, job) = {{1.0, state | 1u << job, 0, 20}};
     }
   }
   const Belief belief = initial_belief(problem);
@@ -175,8 +168,8 @@ TEST("A reward that an action has earned does not count again where the mission 
 Problem two_things(double odds, double of_way) {
   constexpr int things = 2, go = 3 * things;
   constexpr std::uint32_t far = 16;
-  Problem problem = units::world(32, go + 1, 0.95);
-  units::hear(problem, 0.75);
+  Problem problem = world(32, go + 1, 0.95);
+  hear(problem, 0.75);
   problem.starts.clear();
   problem.values.clear();
   problem.variables = 2 * things + 1;
@@ -184,13 +177,13 @@ Problem two_things(double odds, double of_way) {
     for (int bit = 0; bit < problem.variables; ++bit) problem.values.push_back(state >> bit & 1);
     if ((state >> things) == (of_way < 0 ? 4u : 0u)) problem.starts.push_back({state, (state & 1 ? odds : 1 - odds) / 2});
     const bool is_far = state & far;
-    units::row(problem, state, go) = {{1.0, state & ~far, 0, is_far ? of_way : -1.0}};
+    row(problem, state, go) = {{1.0, state & ~far, 0, is_far ? of_way : -1.0}};
     for (int thing = 0; thing < things; ++thing) {
       const std::uint32_t kind = state >> thing & 1, done = 4u << thing;
       const bool is_in_vain = is_far || (state & done);
-      units::row(problem, state, thing) = {{1.0, state, is_in_vain ? 0 : 1 + kind, -0.2}};
-      units::row(problem, state, things + thing) = {{1.0, is_in_vain ? state : state | done, 0, is_in_vain ? -1.0 : kind ? 6.0 : -6.0}};
-      units::row(problem, state, 2 * things + thing) = {{1.0, is_in_vain ? state : state | done, 0, is_in_vain ? -1.0 : kind ? -2.0 : 2.0}};
+      row(problem, state, thing) = {{1.0, state, is_in_vain ? 0 : 1 + kind, -0.2}};
+      row(problem, state, things + thing) = {{1.0, is_in_vain ? state : state | done, 0, is_in_vain ? -1.0 : kind ? 6.0 : -6.0}};
+      row(problem, state, 2 * things + thing) = {{1.0, is_in_vain ? state : state | done, 0, is_in_vain ? -1.0 : kind ? -2.0 : 2.0}};
     }
   }
   return problem;
@@ -217,13 +210,12 @@ TEST("A robot goes to things that are worth the way once they are tested") {
 // taken, and the steps that are left.
 Problem three_things(std::uint32_t steps, double of_unsound) {
   constexpr std::uint32_t things = 3, in_all = 64;
-  Problem problem = units::world(in_all * (steps + 1), 2 * things, 0.95);
+  Problem problem = world(in_all * (steps + 1), 2 * things, 0.95);
   problem.sensings.push_back({{0, 0.75}, {1, 0.25}});
   problem.sensings.push_back({{0, 0.25}, {1, 0.75}});
-  problem.starts.clear();
+  start_evenly(problem, in_all * steps, in_all * steps + 8);
   problem.values.clear();
   problem.variables = 2 * things + 1;
-  for (std::uint32_t sound = 0; sound < 8; ++sound) problem.starts.push_back({in_all * steps + sound, 1.0 / 8});
   for (std::uint32_t state = 0; state < in_all * (steps + 1); ++state) {
     for (std::uint32_t bit = 0; bit < 2 * things; ++bit) problem.values.push_back(state >> bit & 1);
     problem.values.push_back(state / in_all);
@@ -231,8 +223,8 @@ Problem three_things(std::uint32_t steps, double of_unsound) {
     for (std::uint32_t thing = 0; state >= in_all && thing < things; ++thing) {
       const bool is_sound = state >> thing & 1, is_taken = state >> (things + thing) & 1;
       const std::uint32_t later = state - in_all;
-      units::row(problem, state, thing) = {{1.0, later, is_sound ? 2u : 1u, -0.1}};
-      units::row(problem, state, things + thing) = {{1.0, later | 8u << thing, 0, is_taken ? -1.0 : is_sound ? 8.0 : of_unsound}};
+      row(problem, state, thing) = {{1.0, later, is_sound ? 2u : 1u, -0.1}};
+      row(problem, state, things + thing) = {{1.0, later | 8u << thing, 0, is_taken ? -1.0 : is_sound ? 8.0 : of_unsound}};
     }
   }
   return problem;

@@ -6,14 +6,14 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace option_search_tests {
+namespace units::option_search_tests {
 
 constexpr std::size_t dials = 5;
 constexpr std::uint32_t digits = 4;
 constexpr std::uint32_t right = 2;
 
 // A lock that opens when all dials are right. It says how many are.
-struct Lock : units::TableModel {
+struct Lock : TableModel {
   static constexpr bool has_goal_conditions = true;
   static int conditions_met(const State& state) {
     int met = 0;
@@ -21,13 +21,13 @@ struct Lock : units::TableModel {
     return met;
   }
 };
-struct SilentLock : units::TableModel {};
+struct SilentLock : TableModel {};
 
 // Action d turns dial d on by one, and the last action pulls.
-units::Problem lock() {
+Problem lock() {
   std::uint32_t states = 1;
   for (std::size_t dial = 0; dial < dials; ++dial) states *= digits;
-  units::Problem problem = units::world(states + 1, dials + 1, 0.95);
+  Problem problem = world(states + 1, dials + 1, 0.95);
   problem.horizon = 60;
   problem.variables = dials;
   problem.values.assign((states + 1) * dials, static_cast<int>(digits));
@@ -40,15 +40,15 @@ units::Problem lock() {
       problem.values[state * dials + dial] = static_cast<int>(digit);
       is_right = is_right && digit == right;
       const std::uint32_t turned = state - digit * place + (digit + 1) % digits * place;
-      units::row(problem, state, dial) = {{1.0, turned, 0, -0.1}};
+      row(problem, state, dial) = {{1.0, turned, 0, -0.1}};
     }
-    units::row(problem, state, dials) = {{1.0, is_right ? states : state, 0, is_right ? 50.0 : -1.0}};
+    row(problem, state, dials) = {{1.0, is_right ? states : state, 0, is_right ? 50.0 : -1.0}};
   }
   return problem;
 }
 
 template <class Model>
-aos::List<aos::Option> ways(const units::Problem& problem, double& steps) {
+aos::List<aos::Option> ways(const Problem& problem, double& steps) {
   Model::take(problem);
   aos::Sampler random{1};
   const auto belief = aos::Belief<Model>::initial(random);
@@ -62,7 +62,7 @@ aos::List<aos::Option> ways(const units::Problem& problem, double& steps) {
 }
 
 TEST("A way to a reward that asks for five conditions is found by how many of them hold") {
-  const units::Problem problem = lock();
+  const Problem problem = lock();
   double steps = 20'000;
   const auto found = ways<Lock>(problem, steps);
   EXPECT(!found.empty());
@@ -71,14 +71,14 @@ TEST("A way to a reward that asks for five conditions is found by how many of th
 }
 
 TEST("No new value and no new pair of values leads to a reward that asks for five conditions") {
-  const units::Problem problem = lock();
+  const Problem problem = lock();
   double steps = 20'000;
   EXPECT(ways<SilentLock>(problem, steps).empty());
 }
 
 TEST("An exit that earns nothing ends no search for what pays, and a search heeds what no walk has changed") {
   double steps = 20'000;
-  const units::Problem problem = units::corridor_with_exits(6, 3);
+  const Problem problem = corridor_with_exits(6, 3);
   const auto found = ways<SilentLock>(problem, steps);
   EXPECT((!found.empty() && found.front() == aos::Option(6, 3)));
   aos::Sampler random{1};
@@ -89,14 +89,14 @@ TEST("An exit that earns nothing ends no search for what pays, and a search heed
 
 // Action 0 goes on to the next of four places, and action 1 ends the mission, which pays 8 for each place behind it, less 12.
 TEST("Before an end that can be had at once comes what makes it earn more") {
-  units::Problem problem = units::world(5, 2, 0.95);
+  Problem problem = world(5, 2, 0.95);
   problem.horizon = 20;
   problem.variables = 1;
   problem.values = {0, 1, 2, 3, 4};
   problem.endings[4] = 1;
   for (std::uint32_t place = 0; place < 4; ++place) {
-    units::row(problem, place, 0) = {{1.0, std::min(place + 1, 3U), 0, -0.5}};
-    units::row(problem, place, 1) = {{1.0, 4, 0, 8.0 * place - 12}};
+    row(problem, place, 0) = {{1.0, std::min(place + 1, 3U), 0, -0.5}};
+    row(problem, place, 1) = {{1.0, 4, 0, 8.0 * place - 12}};
   }
   SilentLock::take(problem);
   aos::Sampler random{1};
@@ -105,7 +105,7 @@ TEST("Before an end that can be had at once comes what makes it earn more") {
   const aos::BestEnd<SilentLock> search{clock, nullptr};
   double steps = 1'000;
   EXPECT((search.way_from(belief.particles().front().state, steps, random) == aos::Option{0, 0, 0, 1}));
-  for (std::uint32_t place = 0; place < 4; ++place) units::row(problem, place, 1).front().next = place;
+  for (std::uint32_t place = 0; place < 4; ++place) row(problem, place, 1).front().next = place;
   SilentLock::take(problem);
   EXPECT(search.way_from(belief.particles().front().state, steps, random).empty());
 }

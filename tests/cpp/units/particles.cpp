@@ -5,7 +5,7 @@
 #include "aos/model/support.hpp"
 #include "check.hpp"
 
-namespace particles_tests {
+namespace units::particles_tests {
 
 using namespace aos;
 

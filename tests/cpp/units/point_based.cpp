@@ -10,15 +10,13 @@
 #include "point_based/regions.hpp"
 #include "worlds.hpp"
 
-namespace point_based_tests {
+namespace units::point_based_tests {
 
-using units::Problem;
-using units::TableModel;
 namespace point_based = aos::point_based;
 
 // By the engine's own way to numbers. States are numbered as they are found, so those of the start come first.
 point_based::FlatModel flat_model(const Problem& problem) {
-  const units::Belief belief = units::initial_belief(problem);
+  const Belief belief = initial_belief(problem);
   aos::StateSpace<TableModel> space;
   space.reach(belief);
   point_based::FlatModel model = space.rows();
@@ -30,7 +28,7 @@ bool never() { return false; }
 
 // A search at the first belief of the tiger.
 struct TigerSearch : point_based::OnlineSarsop {
-  TigerSearch() : OnlineSarsop{flat_model(units::tiger())} { EXPECT(move_to({{0, 0.5}, {1, 0.5}})); }
+  TigerSearch() : OnlineSarsop{flat_model(tiger())} { EXPECT(move_to({{0, 0.5}, {1, 0.5}})); }
 };
 
 TEST("The first bounds of a corridor enclose its value, and trials close them") {
@@ -134,14 +132,13 @@ TEST("Twice as many states take a simple policy twice the work") {
   double work[] = {0, 0};
   for (const std::uint32_t states : {2000u, 4000u}) {
     // A look mostly tells whether the state's number is odd. To tell it, too, ends the mission.
-    Problem problem = units::world(states + 1, 3, 0.9);
-    problem.starts.clear();
+    Problem problem = world(states + 1, 3, 0.9);
+    start_evenly(problem, 0, states);
     problem.sensings = {{{0, 0.8}, {1, 0.2}}, {{0, 0.2}, {1, 0.8}}};
     problem.endings[states] = 1;
     for (std::uint32_t state = 0; state < states; ++state) {
-      problem.starts.push_back({state, 1.0 / states});
-      units::row(problem, state, 2) = {{1.0, state, state % 2, -1.0}};
-      for (std::uint32_t told : {0u, 1u}) units::row(problem, state, told) = {{1.0, states, 0, told == state % 2 ? 10.0 : -10.0}};
+      row(problem, state, 2) = {{1.0, state, state % 2, -1.0}};
+      for (std::uint32_t told : {0u, 1u}) row(problem, state, told) = {{1.0, states, 0, told == state % 2 ? 10.0 : -10.0}};
     }
     const point_based::FlatModel model = flat_model(problem);
     point_based::OnlineSarsop search{model};
@@ -158,14 +155,14 @@ TEST("A simple policy decides with a standard error above the bound, and with le
   int decided[] = {0, 0};
   int all = 0, narrow = 0;
   for (const double end : {-0.4, -0.2, 0.0, 0.1, 0.2, 0.3}) {
-    Problem problem = units::world(3, 3, 0.9);
+    Problem problem = world(3, 3, 0.9);
     problem.starts = {{0, 0.5}, {1, 0.5}};
     problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};
     problem.endings[2] = 1;
     for (std::uint32_t state = 0; state < 2; ++state) {
-      units::row(problem, state, 0) = {{1.0, state, state, -4.0}};
-      units::row(problem, state, 1) = {{1.0, 2, 0, state == 0 ? 10.0 : -100.0}};
-      units::row(problem, state, 2) = {{1.0, 2, 0, end}};
+      row(problem, state, 0) = {{1.0, state, state, -4.0}};
+      row(problem, state, 1) = {{1.0, 2, 0, state == 0 ? 10.0 : -100.0}};
+      row(problem, state, 2) = {{1.0, 2, 0, end}};
     }
     for (int odds = 40; odds < 60; odds += 2) {
       ++all;
@@ -192,15 +189,14 @@ TEST("A simple policy decides with a standard error above the bound, and with le
 
 TEST("Beside a room of too many states, a plan for the room behind it opens all boxes in turn") {
   constexpr std::uint32_t many = 400, boxes = 3, end = many + boxes;
-  Problem problem = units::world(end + 1, boxes, 0.9);
+  Problem problem = world(end + 1, boxes, 0.9);
   problem.sensings.push_back({{1, 1.0}});
   problem.endings[end] = 1;
-  problem.starts.clear();
-  for (std::uint32_t state = 0; state < many; ++state) problem.starts.push_back({state, 1.0 / many});
+  start_evenly(problem, 0, many);
   for (std::uint32_t action = 0; action < boxes; ++action) {
-    for (std::uint32_t state = 0; state < many; ++state) units::row(problem, state, action) = {{1.0, many + state % boxes, 0, 0.0}};
-    for (std::uint32_t box = 0; box < boxes; ++box) units::row(problem, many + box, action) = {{1.0, many + box, 0, -1.0}};
-    units::row(problem, many + action, action) = {{1.0, end, 1, 10.0}};
+    for (std::uint32_t state = 0; state < many; ++state) row(problem, state, action) = {{1.0, many + state % boxes, 0, 0.0}};
+    for (std::uint32_t box = 0; box < boxes; ++box) row(problem, many + box, action) = {{1.0, many + box, 0, -1.0}};
+    row(problem, many + action, action) = {{1.0, end, 1, 10.0}};
   }
   point_based::OnlineSarsop search{flat_model(problem)};
   EXPECT(search.move_to({{many, 1.0 / 3}, {many + 1, 1.0 / 3}, {many + 2, 1.0 / 3}}));
@@ -208,13 +204,13 @@ TEST("Beside a room of too many states, a plan for the room behind it opens all 
 }
 
 TEST("A belief of states that no start leads to is refused") {
-  Problem problem = units::world(4, 1, 0.9);
+  Problem problem = world(4, 1, 0.9);
   problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};
   problem.starts = {{0, 0.5}, {1, 0.5}};
-  units::row(problem, 0, 0) = {{1.0, 2, 0, 1.0}};
-  units::row(problem, 1, 0) = {{1.0, 3, 1, 2.0}};
-  units::row(problem, 2, 0) = {{1.0, 2, 0, 1.0}};
-  units::row(problem, 3, 0) = {{1.0, 3, 1, 2.0}};
+  row(problem, 0, 0) = {{1.0, 2, 0, 1.0}};
+  row(problem, 1, 0) = {{1.0, 3, 1, 2.0}};
+  row(problem, 2, 0) = {{1.0, 2, 0, 1.0}};
+  row(problem, 3, 0) = {{1.0, 3, 1, 2.0}};
   point_based::FlatModel model = flat_model(problem);
   const point_based::Regions regions{model};
   EXPECT_EQUAL(regions.region_of[0], regions.region_of[1]);
@@ -224,11 +220,11 @@ TEST("A belief of states that no start leads to is refused") {
 }
 
 TEST("States that the robot always tells apart are in regions of their own, worthless ones in none") {
-  Problem problem = units::world(3, 2, 0.9);
+  Problem problem = world(3, 2, 0.9);
   problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};
-  units::row(problem, 0, 0) = {{0.5, 0, 0, 1.0}, {0.5, 1, 1, 1.0}};
-  units::row(problem, 0, 1) = {{1.0, 2, 0, 0.0}};
-  units::row(problem, 1, 0) = {{1.0, 0, 0, 3.0}};
+  row(problem, 0, 0) = {{0.5, 0, 0, 1.0}, {0.5, 1, 1, 1.0}};
+  row(problem, 0, 1) = {{1.0, 2, 0, 0.0}};
+  row(problem, 1, 0) = {{1.0, 0, 0, 3.0}};
   const point_based::FlatModel model = flat_model(problem);
   const point_based::Regions regions{model};
   EXPECT_EQUAL(regions.all.size(), 2u);
@@ -261,4 +257,4 @@ TEST("Draws by columns have the weights that the columns were made of") {
   }
 }
 
-}  // namespace point_based_tests
+}

@@ -5,9 +5,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace progress_tests {
-
-using units::TableModel;
+namespace units::progress_tests {
 
 aos::List<std::string> told;
 
@@ -17,10 +15,9 @@ bool has_told(const char* what) { return std::find(told.begin(), told.end(), wha
 
 // Decides by SARSOP while somebody listens, who is told at every look.
 std::uint64_t decided() {
-  const units::Problem tiger = units::tiger();
-  TableModel::take(tiger);
+  const Problem tiger = units::tiger();
+  const Belief belief = initial_belief(tiger);
   aos::Sampler random{1};
-  const auto belief = aos::Belief<TableModel>::initial(random);
   aos::Planners<TableModel> planner;
   planner.search(aos::PlannerKind::sarsop, belief, {.simulations = 10}, tiger.horizon, random);
   return random.bits();

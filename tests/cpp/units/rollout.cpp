@@ -4,16 +4,12 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace rollout_tests {
+namespace units::rollout_tests {
 
-using units::TableModel;
-
-double mean_return(const units::Problem& problem, int horizon) {
+double mean_return(const Problem& problem, int horizon) {
   constexpr int rollouts = 2000;
-  TableModel::take(problem);
-  TableModel::State start{};
+  const TableModel::State start = first_state(problem);
   aos::Sampler random{1};
-  TableModel::initial(start, random);
   double sum = 0;
   for (int i = 0; i < rollouts; ++i) {
     int left = horizon;
@@ -23,11 +19,11 @@ double mean_return(const units::Problem& problem, int horizon) {
 }
 
 TEST("Rollouts at random reach the end of a corridor, which takes twelve equal actions") {
-  EXPECT(mean_return(units::corridor(12, 1), 24) > 1.5);
+  EXPECT(mean_return(corridor(12, 1), 24) > 1.5);
 }
 
 TEST("Rollouts at random get past an exit that is open everywhere and earns nothing") {
-  EXPECT(mean_return(units::corridor_with_exits(20, 1), 40) > 0.5);
+  EXPECT(mean_return(corridor_with_exits(20, 1), 40) > 0.5);
 }
 
 }

@@ -3,7 +3,7 @@
 
 #include "check.hpp"
 
-namespace search_tree_tests {
+namespace units::search_tree_tests {
 
 constexpr std::size_t megabyte = std::size_t{1} << 20;
 

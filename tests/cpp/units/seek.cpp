@@ -8,10 +8,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace seek_tests {
-
-using units::Problem;
-using units::TableModel;
+namespace units::seek_tests {
 
 constexpr std::uint32_t cells = 14;
 constexpr int go = 0, back = 1, look = 2, take = 3, leave = 4;
@@ -21,7 +18,7 @@ constexpr int horizon = 60;
 Problem corridor_with_a_thing(double found) {
   const std::uint32_t things = cells + 1;  // the last number: the robot has it
   const std::uint32_t states = cells * things;
-  Problem problem = units::world(states + 2, 5, 0.98);
+  Problem problem = world(states + 2, 5, 0.98);
   problem.endings[states] = 1;
   problem.endings[states + 1] = 2;
   problem.horizon = horizon;
@@ -29,34 +26,29 @@ Problem corridor_with_a_thing(double found) {
   problem.sensings.push_back({{0, 0.05}, {1, 0.95}});
   problem.sensings.push_back({{0, 1.0}});
   problem.sensings.push_back({{1, 1.0}});
-  problem.starts.clear();
-  for (std::uint32_t thing = 4; thing < cells; ++thing) problem.starts.push_back({thing, 1.0 / (cells - 4)});
+  start_evenly(problem, 4, cells);
   for (std::uint32_t state = 0; state < states; ++state) {
     const std::uint32_t cell = state / things, thing = state % things;
     problem.values[2 * state] = static_cast<int>(cell);
     problem.values[2 * state + 1] = static_cast<int>(thing);
     const bool is_near = thing != cells && cell + 1 >= thing && cell <= thing + 1;
     const std::uint32_t next = cell + 1 < cells ? cell + 1 : cell, last = cell > 0 ? cell - 1 : cell;
-    units::row(problem, state, go) = {{1.0, next * things + thing, 0, -0.2}};
-    units::row(problem, state, back) = {{1.0, last * things + thing, 0, -0.2}};
-    units::row(problem, state, look) = {{1.0, state, is_near ? 1u : 2u, -0.2}};
-    units::row(problem, state, take) = {{1.0, thing == cell ? cell * things + cells : state, thing == cell ? 3u : 4u, thing == cell ? -0.2 : -3.0}};
+    row(problem, state, go) = {{1.0, next * things + thing, 0, -0.2}};
+    row(problem, state, back) = {{1.0, last * things + thing, 0, -0.2}};
+    row(problem, state, look) = {{1.0, state, is_near ? 1u : 2u, -0.2}};
+    row(problem, state, take) = {{1.0, thing == cell ? cell * things + cells : state, thing == cell ? 3u : 4u, thing == cell ? -0.2 : -3.0}};
     const bool is_paid = thing == cells;
-    units::row(problem, state, leave) = {{1.0, cell == 0 ? states : states + 1, 0, cell > 0 ? -60 : is_paid ? found : 0}};
+    row(problem, state, leave) = {{1.0, cell == 0 ? states : states + 1, 0, cell > 0 ? -60 : is_paid ? found : 0}};
   }
   return problem;
 }
 
 // Steps draw a number, as a battery does, so that states cannot be listed.
-struct Drained : TableModel {
+struct Drained : OwnRollouts<Drained> {
   template <class Random>
   static aos::Step step(State& state, int action, Random& random) {
     random.uniform();
     return TableModel::step(state, action, random);
-  }
-  static double rollout(const State& state, int& left, aos::Sampler& random) { return aos::rollout<Drained>(state, left, random); }
-  static void rollout_odds(const State& state, double* odds, aos::Sampler& random) {
-    aos::rollout_odds<Drained>(state, odds, action_count(), random);
   }
 };
 
@@ -69,9 +61,8 @@ struct Found {
   std::string decided_by;
 
   explicit Found(const Problem& problem) {
-    Drained::take(problem);
-    aos::Sampler random{1};
-    const auto belief = aos::Belief<Drained>::drawn(random);
+    const auto belief = drawn_belief<Drained>(problem);
+    aos::Sampler random{2};
     const aos::BarredActions none;
     aos::SeekPolicy<Drained> policy;
     sought = policy.find(belief, horizon, none, 100'000, random);
@@ -109,9 +100,8 @@ TEST("A thing that pays less than the way to it is not sought") {
 
 TEST("States that differ by what runs down alone are one state of a belief, with their weights") {
   const Problem problem = corridor_with_a_thing(60);
-  Drained::take(problem);
-  aos::Sampler random{1};
-  const auto belief = aos::Belief<Drained>::drawn(random);
+  const auto belief = drawn_belief<Drained>(problem);
+  aos::Sampler random{2};
   aos::SampledBelief<Drained> sampled;
   sampled.draw_alike(belief, 64, [](const Drained::State& state) { return static_cast<std::uint64_t>(state.variables[1] % 2); }, random);
   EXPECT_EQUAL(sampled.size(), std::size_t{2});
@@ -123,9 +113,8 @@ TEST("States that differ by what runs down alone are one state of a belief, with
 TEST("Where nothing is left to be sought, it is known what the best end at once returns") {
   Problem problem = corridor_with_a_thing(60);
   problem.starts = {{2 * (cells + 1) + cells, 1.0}};  // in the third cell, with the thing
-  Drained::take(problem);
-  aos::Sampler random{1};
-  const auto belief = aos::Belief<Drained>::drawn(random);
+  const auto belief = drawn_belief<Drained>(problem);
+  aos::Sampler random{2};
   aos::SeekPolicy<Drained> policy;
   EXPECT_EQUAL(policy.find(belief, horizon, aos::BarredActions{}, 100'000, random).action, -1);
   EXPECT_NEAR(policy.returned_at_once(), 60 * 0.98 * 0.98 - 0.2 - 0.2 * 0.98, 1e-9);

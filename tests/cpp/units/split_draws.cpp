@@ -4,7 +4,7 @@
 #include "aos/model/support.hpp"
 #include "check.hpp"
 
-namespace split_draws_tests {
+namespace units::split_draws_tests {
 
 using namespace aos;
 

@@ -5,21 +5,22 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace state_space_tests {
+namespace units::state_space_tests {
 
-using units::Problem;
-using units::TableModel;
-using units::Belief;
-using units::initial_belief;
 using Space = aos::StateSpace<TableModel>;
 
-TEST("All states that can be reached are listed, and no others") {
-  Problem problem = units::corridor(6, 0.9);
-  problem.starts = {{2, 1.0}};
-  units::row(problem, 1, 1) = {{1.0, 1, 0, 0.0}};  // cell 0 cannot be reached
-  const Belief belief = initial_belief(problem);
+// The states that a problem's first belief leads to. The problem is the model from then on, as long as it lives.
+struct Listed {
+  explicit Listed(const Problem& problem) : belief{initial_belief(problem)} { EXPECT(space.reach(belief)); }
+  Belief belief;
   Space space;
-  EXPECT(space.reach(belief));
+};
+
+TEST("All states that can be reached are listed, and no others") {
+  Problem problem = corridor(6, 0.9);
+  problem.starts = {{2, 1.0}};
+  row(problem, 1, 1) = {{1.0, 1, 0, 0.0}};  // cell 0 cannot be reached
+  auto [belief, space] = Listed{problem};
   EXPECT(space.is_closed());
   EXPECT_EQUAL(space.size(), 5u);
   EXPECT(space.reaches(aos::Ending::goal));
@@ -27,11 +28,10 @@ TEST("All states that can be reached are listed, and no others") {
 }
 
 TEST("A drawn belief is listed, unless most of its states were drawn only once") {
-  Problem few = units::corridor(6, 0.9);
+  Problem few = corridor(6, 0.9);
   few.starts = {{0, 0.7}, {2, 0.2}, {4, 0.1}};
-  Problem many = units::world(20000, 1, 0.9);
-  many.starts.clear();
-  for (std::uint32_t state = 0; state < 20000; ++state) many.starts.push_back({state, 1 / 20000.0});
+  Problem many = world(20000, 1, 0.9);
+  start_evenly(many, 0, 20'000);
   aos::Sampler random{1};
   TableModel::take(few);
   Space space;
@@ -43,35 +43,30 @@ TEST("A drawn belief is listed, unless most of its states were drawn only once")
 }
 
 TEST("A row has the expected reward and the probabilities of the states after it; an ended one has no number") {
-  Problem problem = units::world(3, 1, 0.9);
+  Problem problem = world(3, 1, 0.9);
   problem.endings[2] = 2;
-  units::row(problem, 0, 0) = {{0.25, 1, 0, 4.0}, {0.25, 1, 0, 0.0}, {0.5, 2, 0, -6.0}};
-  const Belief belief = initial_belief(problem);
-  Space space;
-  EXPECT(space.reach(belief));
+  row(problem, 0, 0) = {{0.25, 1, 0, 4.0}, {0.25, 1, 0, 0.0}, {0.5, 2, 0, -6.0}};
+  auto [belief, space] = Listed{problem};
   EXPECT_EQUAL(space.size(), 2u);
   const std::uint32_t start = space.find(belief.particles().front().state);
   const auto& rows = space.rows();
   EXPECT_NEAR(rows.rewards[rows.row(start, 0)], 0.25 * 4 - 0.5 * 6, 1e-12);
-  const auto* outcome = rows.outcomes.begin(rows.row(start, 0));
-  EXPECT_EQUAL(rows.outcomes.end(rows.row(start, 0)) - outcome, 1);
-  EXPECT_NEAR(outcome->probability, 0.5, 1e-12);
-  EXPECT_EQUAL(space[outcome->next].variables[0], 1);
+  const auto outcomes = rows.outcomes[rows.row(start, 0)];
+  EXPECT_EQUAL(outcomes.size(), 1u);
+  EXPECT_NEAR(outcomes[0].probability, 0.5, 1e-12);
+  EXPECT_EQUAL(space[outcomes[0].next].variables[0], 1);
 }
 
 TEST("Outcomes in the same next state share their likelihoods, which sum to 1") {
   const Problem tiger = units::tiger();
-  const Belief belief = initial_belief(tiger);
-  Space space;
-  EXPECT(space.reach(belief));
+  auto [belief, space] = Listed{tiger};
   const auto& rows = space.rows();
   for (std::size_t row = 0; row < rows.states * rows.actions; ++row) {
     double total = 0;
-    for (const auto* outcome = rows.outcomes.begin(row); outcome != rows.outcomes.end(row); ++outcome) {
-      total += outcome->probability;
+    for (const auto& outcome : rows.outcomes[row]) {
+      total += outcome.probability;
       double likelihoods = 0;
-      const auto* likelihood = rows.likelihoods.begin(outcome->sensing);
-      for (; likelihood != rows.likelihoods.end(outcome->sensing); ++likelihood) likelihoods += likelihood->probability;
+      for (const auto& likelihood : rows.likelihoods[outcome.sensing]) likelihoods += likelihood.probability;
       EXPECT_NEAR(likelihoods, 1.0, 1e-12);
     }
     EXPECT_NEAR(total, 1.0, 1e-12);
@@ -79,25 +74,19 @@ TEST("Outcomes in the same next state share their likelihoods, which sum to 1") 
 }
 
 TEST("Variables that do not matter tell no states apart, and all others do") {
-  Problem problem = units::world(6, 1, 0.9);
+  Problem problem = world(6, 1, 0.9);
   for (std::uint32_t state = 0; state < 6; ++state) {
     problem.values[2 * state] = static_cast<int>(state % 2);
     problem.values[2 * state + 1] = static_cast<int>(state / 2);
-    units::row(problem, state, 0) = {{1.0, (state + 1) % 6, 0, state % 2 == 0 ? 1.0 : 0.0}};
+    row(problem, state, 0) = {{1.0, (state + 1) % 6, 0, state % 2 == 0 ? 1.0 : 0.0}};
   }
-  const Belief all = initial_belief(problem);
-  Space apart;
-  EXPECT(apart.reach(all));
-  EXPECT_EQUAL(apart.size(), 6u);
+  EXPECT_EQUAL(Listed{problem}.space.size(), 6u);
   problem.irrelevant = {1};
-  const Belief some = initial_belief(problem);
-  Space together;
-  EXPECT(together.reach(some));
-  EXPECT_EQUAL(together.size(), 2u);
+  EXPECT_EQUAL(Listed{problem}.space.size(), 2u);
 }
 
 TEST("A limit that is met leaves nothing listed, and is told") {
-  const Problem problem = units::corridor(50, 0.9);
+  const Problem problem = corridor(50, 0.9);
   const Belief belief = initial_belief(problem);
   Space space{aos::ListLimits{.states = 10}};
   EXPECT(!space.reach(belief));
@@ -110,9 +99,8 @@ TEST("A limit that is met leaves nothing listed, and is told") {
 
 TEST("A list that will take far more work than its limit is given up early") {
   constexpr std::uint32_t states = 20'000;
-  Problem many = units::world(states, 1, 0.9);
-  many.starts.clear();
-  for (std::uint32_t state = 0; state < states; ++state) many.starts.push_back({state, 1.0 / states});
+  Problem many = world(states, 1, 0.9);
+  start_evenly(many, 0, states);
   const Belief belief = initial_belief(many);
   static std::uint64_t listed = 0;
   aos::progress::between = std::chrono::milliseconds{0};
@@ -129,8 +117,8 @@ TEST("A list that will take far more work than its limit is given up early") {
 }
 
 TEST("A later try is for half as many states in the belief, and lists fewer states than the first one") {
-  Problem problem = units::corridor(30'000, 0.9);
-  for (std::uint32_t cell = 0; cell < 30'000; ++cell) units::row(problem, cell, 1) = {{1.0, cell, 0, 0.0}};  // no way back
+  Problem problem = corridor(30'000, 0.9);
+  for (std::uint32_t cell = 0; cell < 30'000; ++cell) row(problem, cell, 1) = {{1.0, cell, 0, 0.0}};  // no way back
   TableModel::take(problem);
   const auto tries_from = [&](Space& space, aos::List<exam::Start> starts) {
     problem.starts = std::move(starts);
@@ -147,7 +135,7 @@ TEST("A later try is for half as many states in the belief, and lists fewer stat
 }
 
 TEST("What so many decisions can lead to is listed without the states behind it") {
-  const Problem problem = units::corridor(50, 0.9);
+  const Problem problem = corridor(50, 0.9);
   const Belief belief = initial_belief(problem);
   Space space;
   space.reach_within(belief, 4);
@@ -156,12 +144,10 @@ TEST("What so many decisions can lead to is listed without the states behind it"
 }
 
 TEST("The running part of a belief comes by number, its weights as they are") {
-  Problem problem = units::world(3, 1, 0.9);
+  Problem problem = world(3, 1, 0.9);
   problem.endings[1] = 1;
-  units::row(problem, 0, 0) = {{0.5, 1, 0, 0}, {0.3, 2, 0, 0}, {0.2, 0, 0, 0}};
-  Belief belief = initial_belief(problem);
-  Space space;
-  EXPECT(space.reach(belief));
+  row(problem, 0, 0) = {{0.5, 1, 0, 0}, {0.3, 2, 0, 0}, {0.2, 0, 0, 0}};
+  auto [belief, space] = Listed{problem};
   aos::Sampler random{1};
   belief = belief.predicted(0, random);
   EXPECT(space.reach(belief));
@@ -176,13 +162,11 @@ TEST("The running part of a belief comes by number, its weights as they are") {
 }
 
 TEST("Steps by the table have the odds of the model, and its expected rewards") {
-  Problem problem = units::world(3, 1, 0.9);
+  Problem problem = world(3, 1, 0.9);
   problem.endings[2] = 1;
   problem.sensings.push_back({{0, 0.3}, {1, 0.7}});
-  units::row(problem, 0, 0) = {{0.1, 0, 0, 2.0}, {0.6, 1, 1, -1.0}, {0.3, 2, 0, 5.0}};
-  const Belief belief = initial_belief(problem);
-  Space space;
-  EXPECT(space.reach(belief));
+  row(problem, 0, 0) = {{0.1, 0, 0, 2.0}, {0.6, 1, 1, -1.0}, {0.3, 2, 0, 5.0}};
+  auto [belief, space] = Listed{problem};
   aos::StepTable<TableModel> table;
   EXPECT(table.prepare(space, belief));
   aos::Sampler random{5};
@@ -202,17 +186,9 @@ TEST("Steps by the table have the odds of the model, and its expected rewards") 
   EXPECT_NEAR(rewards / draws, 0.1 * 2 - 0.6 + 0.3 * 5, 0.02);
 }
 
-// The states of the tiger, listed.
-struct Tiger {
-  Problem problem = units::tiger();
-  Belief belief = initial_belief(problem);
-  Space space{};
-  bool is_listed = space.reach(belief);
-};
-
 TEST("Exact values are those that can be worked out by hand") {
-  auto [problem, belief, space, is_listed] = Tiger{};
-  EXPECT(is_listed);
+  const Problem problem = tiger();
+  auto [belief, space] = Listed{problem};
   const aos::ObservableValues observable{space.rows(), space.numbering(), 3};
   aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 1000}};
   const auto one = evaluation.action_values(space.exact_weights_of(belief), 1);
@@ -229,8 +205,8 @@ TEST("Exact values are those that can be worked out by hand") {
 }
 
 TEST("A belief that is a little wrong has values that may be wrong by what the largest rewards are worth") {
-  auto [problem, belief, space, is_listed] = Tiger{};
-  EXPECT(is_listed);
+  const Problem problem = tiger();
+  auto [belief, space] = Listed{problem};
   EXPECT_EQUAL(space.slack(belief, 3), 0);
   const Belief rough = Belief::of({belief.particles(), {}, {}}, 1e-7, false);
   EXPECT(rough.is_exact());
@@ -239,8 +215,8 @@ TEST("A belief that is a little wrong has values that may be wrong by what the l
 }
 
 TEST("Exact values that exceed the budget are refused, and no wrong ones given") {
-  auto [problem, belief, space, is_listed] = Tiger{};
-  EXPECT(is_listed);
+  const Problem problem = tiger();
+  auto [belief, space] = Listed{problem};
   const aos::ObservableValues observable{space.rows(), space.numbering(), 10};
   aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 3}};
   bool is_refused = false;

@@ -3,7 +3,7 @@
 
 #include "check.hpp"
 
-namespace text_order_tests {
+namespace units::text_order_tests {
 
 using aos::order_of_texts;
 

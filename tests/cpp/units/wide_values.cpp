@@ -6,12 +6,8 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace wide_values_tests {
+namespace units::wide_values_tests {
 
-using units::Problem;
-using units::TableModel;
-using units::Belief;
-using units::initial_belief;
 using Wide = aos::WideValues<TableModel>;
 
 constexpr int horizon = 400;
@@ -19,7 +15,7 @@ constexpr int horizon = 400;
 // A problem with up to three outcomes of each of four actions, each step's reward between -5 and 5.
 Problem drawn(std::uint64_t seed, std::size_t states) {
   aos::Sampler random{seed};
-  Problem problem = units::world(states, 4, 0.9);
+  Problem problem = world(states, 4, 0.9);
   problem.endings[states - 1] = 1;
   for (std::size_t state = 0; state < states; ++state) {
     for (std::size_t action = 0; action < 4; ++action) {
@@ -56,18 +52,18 @@ TEST("Values of many states are those of value iteration, in drawn problems") {
 }
 
 TEST("Values of many states are those of value iteration, where the goal is far") {
-  EXPECT_NEAR(largest_difference(units::corridor(40, 0.95)), 0, 0.001);
+  EXPECT_NEAR(largest_difference(corridor(40, 0.95)), 0, 0.001);
 }
 
 TEST("Of actions that lead to the same states the best one counts") {
-  Problem problem = units::corridor(3, 0.9);
-  units::row(problem, 2, 1) = units::row(problem, 2, 0);
-  units::row(problem, 2, 1).front().reward = 12;
+  Problem problem = corridor(3, 0.9);
+  row(problem, 2, 1) = row(problem, 2, 0);
+  row(problem, 2, 1).front().reward = 12;
   EXPECT_NEAR(largest_difference(problem), 0, 0.001);
 }
 
 TEST("Of each action it is known what it is worth beyond its state") {
-  const Problem problem = units::corridor(3, 0.9);
+  const Problem problem = corridor(3, 0.9);
   const Belief belief = initial_belief(problem);
   Wide wide;
   aos::Sampler random{2};
@@ -79,10 +75,10 @@ TEST("Of each action it is known what it is worth beyond its state") {
 }
 
 TEST("A state that was not listed has the highest value, also where all values are negative") {
-  Problem problem = units::world(3, 1, 0.5);
+  Problem problem = world(3, 1, 0.5);
   problem.endings[2] = 2;
-  units::row(problem, 0, 0) = {{1.0, 1, 0, -1}};
-  units::row(problem, 1, 0) = {{1.0, 2, 0, -8}};
+  row(problem, 0, 0) = {{1.0, 1, 0, -1}};
+  row(problem, 1, 0) = {{1.0, 2, 0, -8}};
   const Belief belief = initial_belief(problem);
   Wide wide;
   EXPECT(wide.prepare(belief, horizon));
@@ -92,7 +88,7 @@ TEST("A state that was not listed has the highest value, also where all values a
 }
 
 TEST("Too many states have no values") {
-  const Problem problem = units::corridor(40, 0.95);
+  const Problem problem = corridor(40, 0.95);
   const Belief belief = initial_belief(problem);
   Wide wide{{.states = 39}};
   EXPECT(!wide.prepare(belief, horizon));
@@ -100,14 +96,14 @@ TEST("Too many states have no values") {
 }
 
 TEST("Values that do not settle within the horizon are not used") {
-  const Problem problem = units::corridor(40, 0.95);
+  const Problem problem = corridor(40, 0.95);
   const Belief belief = initial_belief(problem);
   Wide wide;
   EXPECT(!wide.prepare(belief, 1));
 }
 
 TEST("States keep their numbers when more variables turn out to differ") {
-  const Problem problem = units::world(3, 1, 0.9);
+  const Problem problem = world(3, 1, 0.9);
   TableModel::take(problem);
   aos::StateNumbers<TableModel> numbers;
   const auto state_of = [](int first, int second) {

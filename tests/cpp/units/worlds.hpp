@@ -13,12 +13,40 @@ using exam::TableModel;
 using Belief = aos::Belief<TableModel>;
 
 // The belief with which a problem begins. The problem is the model from then on, as long as it lives.
-inline Belief initial_belief(const Problem& problem) {
+template <class Model = TableModel>
+aos::Belief<Model> initial_belief(const Problem& problem) {
+  Model::take(problem);
+  aos::Sampler random{1};
+  return aos::Belief<Model>::initial(random);
+}
+template <class Model = TableModel>
+aos::Belief<Model> initial_belief(const Problem&&) = delete;
+
+// The same, drawn.
+template <class Model>
+aos::Belief<Model> drawn_belief(const Problem& problem) {
+  Model::take(problem);
+  aos::Sampler random{1};
+  return aos::Belief<Model>::drawn(random);
+}
+
+// A state with which a problem begins. The problem is the model from then on, too.
+inline TableModel::State first_state(const Problem& problem) {
   TableModel::take(problem);
   aos::Sampler random{1};
-  return Belief::initial(random);
+  TableModel::State state{};
+  TableModel::initial(state, random);
+  return state;
 }
-Belief initial_belief(const Problem&&) = delete;
+
+// A problem as a model that plays its own steps at random.
+template <class Own>
+struct OwnRollouts : TableModel {
+  static double rollout(const State& state, int& left, aos::Sampler& random) { return aos::rollout<Own>(state, left, random); }
+  static void rollout_odds(const State& state, double* odds, aos::Sampler& random) {
+    aos::rollout_odds<Own>(state, odds, action_count(), random);
+  }
+};
 
 // Where a row is not filled, the state stays, nothing is seen and nothing is earned.
 inline Problem world(std::size_t states, std::size_t actions, double discount) {
@@ -39,6 +67,12 @@ inline Problem world(std::size_t states, std::size_t actions, double discount) {
     for (std::size_t action = 0; action < actions; ++action) problem.rows.push_back({{1.0, state, 0, 0.0}});
   }
   return problem;
+}
+
+// A problem begins in each of these states as likely.
+inline void start_evenly(Problem& problem, std::uint32_t first, std::uint32_t end) {
+  problem.starts.clear();
+  for (std::uint32_t state = first; state < end; ++state) problem.starts.push_back({state, 1.0 / (end - first)});
 }
 
 inline aos::List<exam::Outcome>& row(Problem& problem, std::size_t state, std::size_t action) {

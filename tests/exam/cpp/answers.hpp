@@ -20,15 +20,15 @@ inline double number_of(const Options& options, const std::string& name, double 
 }
 
 // The true values of the actions at the start, as brackets: with so many decisions to go, or without an end (0).
-inline std::string values_of(const exam::Problem& problem, int decisions, double seconds) {
-  const exam::Flat flat{problem, true};
-  exam::Truth truth{flat, decisions};
+inline std::string values_of(const Problem& problem, int decisions, double seconds) {
+  const Flat flat{problem, true};
+  Truth truth{flat, decisions};
   const auto [start, running] = flat.start();
   aos::JsonWriter json;
   json.begin_object().member("problem", problem.name).key("values").begin_array();
   for (std::size_t action = 0; action < problem.actions; ++action) {
     truth.narrow_action(start, action, decisions, 1e-9 * flat.largest_reward(), seconds);
-    const exam::Bracket value = truth.action_value(start, action, decisions);
+    const Bracket value = truth.action_value(start, action, decisions);
     json.begin_array().value(running * value.lower).value(running * value.upper).end_array();
   }
   return json.end_array().end_object().text();
@@ -45,24 +45,16 @@ Chosen chosen(const Options& options, double simulations, double truth_seconds, 
   return made;
 }
 
-inline std::string report_of(const std::string& what, const exam::Problem& problem, const Options& options) {
+inline std::string report_of(const std::string& what, const Problem& problem, const Options& options) {
   if (what == "values") {
     const auto decisions = static_cast<int>(number_of(options, "decisions", problem.horizon));
     return values_of(problem, decisions, number_of(options, "truth", 1));
   }
-  if (what == "intervals") {
-    return exam::intervals_of(problem, chosen<exam::IntervalOptions>(options, 5000, 0.5, 3));
-  }
-  if (what == "bounds") {
-    return exam::Claims{problem, chosen<exam::ClaimOptions>(options, 2000, 1, 4)}.report();
-  }
-  exam::RegretOptions regret;
-  regret.seed = static_cast<std::uint64_t>(number_of(options, "seed", 1));
+  if (what == "intervals") return intervals_of(problem, chosen<IntervalOptions>(options, 5000, 0.5, 3));
+  if (what == "bounds") return Claims{problem, chosen<ClaimOptions>(options, 2000, 1, 4)}.report();
+  auto regret = chosen<RegretOptions>(options, 0, 5, 0);
   regret.seconds = number_of(options, "seconds", 0);
-  regret.simulations = static_cast<std::uint64_t>(number_of(options, "simulations", 0));
   regret.missions = static_cast<int>(number_of(options, "missions", 4));
-  regret.steps = static_cast<int>(number_of(options, "steps", 0));
-  regret.truth_seconds = number_of(options, "truth", 5);
   regret.judges_decisions = number_of(options, "judged", 1) != 0;
   const std::string names = options.at("planners");
   for (std::size_t first = 0; first <= names.size();) {
@@ -70,7 +62,12 @@ inline std::string report_of(const std::string& what, const exam::Problem& probl
     regret.planners.push_back(names.substr(first, last - first));
     first = last + 1;
   }
-  return exam::Regret{problem, regret}.report();
+  return Regret{problem, regret}.report();
+}
+
+inline std::string report_of_fault(const Problem& problem, const std::string& fault) {
+  aos::JsonWriter json;
+  return json.begin_object().member("problem", problem.name).member("fault", fault).end_object().text();
 }
 
 // Takes the arguments that the usage below tells of. Returns the exit status.
@@ -83,17 +80,14 @@ inline int answer_problems(int argc, char** argv) {
     return 2;
   }
   try {
-    while (const auto problem = exam::read_problem(std::cin)) {
+    while (const auto problem = read_problem(std::cin)) {
       std::string report;
       try {
         report = report_of(what, *problem, options);
       } catch (const aos::ModelFault& fault) {
-        aos::JsonWriter json;
-        report = json.begin_object().member("problem", problem->name).member("fault", fault.text).end_object().text();
+        report = report_of_fault(*problem, fault.text);
       } catch (const aos::NotEnumerable& obstacle) {
-        aos::JsonWriter json;
-        json.begin_object().member("problem", problem->name).member("fault", obstacle.reason).end_object();
-        report = json.text();
+        report = report_of_fault(*problem, obstacle.reason);
       }
       std::puts(report.c_str());
       std::fflush(stdout);

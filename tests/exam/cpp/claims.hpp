@@ -133,22 +133,16 @@ class Claims {
   void check_action_values(const std::string& claim, const aos::List<double>& values, const Mass& exact,
                            double running, int decisions) {
     Truth& truth = truth_of(decisions);
-    for (std::size_t i = 0; i < std::min(values.size(), max_actions); ++i) {
-      const std::size_t action = values.size() <= max_actions ? i : choosing_.bits() % values.size();
-      within_allowance([&](double seconds) {
-        truth.narrow_action(exact, action, decisions, 1e-7 * largest_, seconds / 4);
-      });
-      const Bracket bracket = truth.action_value(exact, action, decisions);
+    for_some_actions(values.size(), [&](std::size_t action) {
+      const Bracket bracket = bracket_of(action, truth, exact, decisions, 1e-7);
       check_within(claim + std::to_string(action), values[action], {running * bracket.lower, running * bracket.upper},
                    1e-8 * (largest_ + std::abs(bracket.upper)));
-    }
+    });
   }
 
   void check_planner(aos::PlannerKind kind, Planner& planner, const Belief& belief, const Mass& exact, double running) {
     aos::Sampler random{options_.seed + 17};
-    aos::Budget budget;
-    budget.simulations = options_.simulations;
-    planner.search(kind, belief, budget, problem_.horizon, random);
+    planner.search(kind, belief, {.simulations = options_.simulations}, problem_.horizon, random);
     who_ = std::string{aos::planner_names[static_cast<std::size_t>(kind)]} + " (" + planner.name() + ")";
     planners_[planner.name()] += 1;
     const std::string& why = planner.why();
@@ -180,21 +174,17 @@ class Claims {
     const aos::List<aos::ActionEstimate> estimates = planner.estimates(belief);
     const auto values = planner.values(belief, estimates, planner.choice(estimates));
     Truth& truth = truth_of(problem_.horizon);
-    for (std::size_t i = 0; i < std::min(values.size(), max_actions); ++i) {
-      const std::size_t action = values.size() <= max_actions ? i : choosing_.bits() % values.size();
+    for_some_actions(values.size(), [&](std::size_t action) {
       const auto& [at_least, at_most] = std::pair{values[action].at_least, values[action].at_most};
-      if (!std::isfinite(at_least) && !std::isfinite(at_most)) continue;
-      within_allowance([&](double seconds) {
-        truth.narrow_action(exact, action, problem_.horizon, 1e-6 * largest_, seconds / 4);
-      });
-      const Bracket bracket = truth.action_value(exact, action, problem_.horizon);
+      if (!std::isfinite(at_least) && !std::isfinite(at_most)) return;
+      const Bracket bracket = bracket_of(action, truth, exact, problem_.horizon, 1e-6);
       const double rounding = 1e-8 * (largest_ + std::abs(bracket.upper));
       ++claims_;
       if (at_least <= running * bracket.upper + rounding && at_most >= running * bracket.lower - rounding &&
-          at_least <= at_most) continue;
+          at_least <= at_most) return;
       fail("proven of action " + std::to_string(action), number(at_least) + " to " + number(at_most),
            running * bracket.lower, running * bracket.upper);
-    }
+    });
   }
 
   // The truth with so many decisions to go; 0 counts none.
@@ -225,18 +215,24 @@ class Claims {
   void check_lower_values(const aos::List<aos::ActionEstimate>& estimates, const Mass& exact, double running,
                           int decisions) {
     Truth& truth = truth_of(decisions);
-    for (std::size_t i = 0; i < std::min(estimates.size(), max_actions); ++i) {
-      const std::size_t action = estimates.size() <= max_actions ? i : choosing_.bits() % estimates.size();
-      if (estimates[action].n == 0) continue;
-      within_allowance([&](double seconds) {
-        truth.narrow_action(exact, action, decisions, 1e-6 * largest_, seconds / 4);
-      });
-      const double upper = running * truth.action_value(exact, action, decisions).upper;
+    for_some_actions(estimates.size(), [&](std::size_t action) {
+      if (estimates[action].n == 0) return;
+      const double upper = running * bracket_of(action, truth, exact, decisions, 1e-6).upper;
       ++claims_;
       if (estimates[action].q > upper + 1e-8 * (largest_ + std::abs(upper))) {
         fail("lower value of action " + std::to_string(action), number(estimates[action].q), -INFINITY, upper);
       }
-    }
+    });
+  }
+
+  void for_some_actions(std::size_t count, const std::function<void(std::size_t action)>& look) {
+    for (std::size_t i = 0; i < std::min(count, max_actions); ++i) look(count <= max_actions ? i : choosing_.bits() % count);
+  }
+
+  // What an action is worth, if time allows with a gap of so small a part of the largest reward.
+  Bracket bracket_of(std::size_t action, Truth& truth, const Mass& exact, int decisions, double gap) {
+    within_allowance([&](double seconds) { truth.narrow_action(exact, action, decisions, gap * largest_, seconds / 4); });
+    return truth.action_value(exact, action, decisions);
   }
 
   // What narrows a bracket takes a part of the time that is left for the problem; brackets hold at any time.

@@ -59,6 +59,12 @@ class Flat {
     return branches_[state * actions() + action];
   }
 
+  // What an action earns, and then what `later` says of the next state.
+  double value(std::size_t state, std::size_t action, const aos::List<double>& later) const {
+    double value = reward(state, action);
+    for (const Branch& branch : branches(state, action)) value += discount() * branch.probability * later[branch.next];
+    return value;
+  }
   double expected_reward(const Mass& belief, std::size_t action) const {
     double sum = 0;
     for (const auto& [state, weight] : belief) sum += weight * reward(state, action);
@@ -153,11 +159,7 @@ inline aos::List<double> random_values(const Flat& flat, int decisions) {
     for (std::size_t state = 0; state < flat.states(); ++state) {
       if (!flat.problem().is_running(state)) continue;
       for (std::size_t action = 0; action < flat.actions(); ++action) {
-        double value = flat.reward(state, action);
-        for (const Branch& branch : flat.branches(state, action)) {
-          value += flat.discount() * branch.probability * before[branch.next];
-        }
-        values[state] += value / static_cast<double>(flat.actions());
+        values[state] += flat.value(state, action, before) / static_cast<double>(flat.actions());
       }
     }
   }

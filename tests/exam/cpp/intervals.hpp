@@ -62,8 +62,7 @@ inline void write_line(aos::JsonWriter& json, const DecidedCase& decided, Truth&
   const BeliefLine line{decided.problem, decided.exact};
   json.begin_array();
   if (line.is_open() && decided.belief.probability_of(aos::Ending::running) > 1 - 1e-9) {
-    aos::Budget budget;
-    budget.simulations = options.simulations;
+    const aos::Budget budget{.simulations = options.simulations};
     json.value(line.now()).begin_array();
     for (const double place : {0.0, line.now() / 2, (1 + line.now()) / 2, 1.0}) {
       const aos::Belief<TableModel> moved = line.moved(decided.belief, place);
@@ -99,8 +98,7 @@ inline std::string intervals_of(const Problem& problem, const IntervalOptions& o
   aos::JsonWriter json;
   json.begin_object().member("problem", problem.name).key("cases").begin_array();
   for (int step = 0; step < options.steps && !exact.empty(); ++step) {
-    aos::Budget budget;
-    budget.simulations = options.simulations;
+    const aos::Budget budget{.simulations = options.simulations};
     planner.search(aos::PlannerKind::pomcp, belief, budget, problem.horizon, random);
     const aos::List<aos::ActionEstimate> estimates = planner.estimates(belief);
     const int chosen = planner.choice(estimates);

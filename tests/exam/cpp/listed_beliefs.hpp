@@ -67,12 +67,10 @@ class ListedBeliefs {
   std::map<std::uint32_t, std::map<std::uint32_t, Real>> successors(const Belief& belief, std::size_t action) const {
     std::map<std::uint32_t, std::map<std::uint32_t, Real>> by_observation;
     for (const auto& [state, probability] : belief) {
-      const std::size_t row = model_.row(state, action);
-      for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
-        const auto* last = model_.likelihoods.end(outcome->sensing);
-        for (const auto* likelihood = model_.likelihoods.begin(outcome->sensing); likelihood != last; ++likelihood) {
-          const Real weight = probability * outcome->probability * likelihood->probability;
-          if (weight > 0) by_observation[likelihood->observation][outcome->next] += weight;
+      for (const auto& outcome : model_.outcomes[model_.row(state, action)]) {
+        for (const auto& likelihood : model_.likelihoods[outcome.sensing]) {
+          const Real weight = probability * outcome.probability * likelihood.probability;
+          if (weight > 0) by_observation[likelihood.observation][outcome.next] += weight;
         }
       }
     }
@@ -99,9 +97,7 @@ class ListedBeliefs {
 
   Real row_value(std::size_t row, const Values& later) const {
     Real sum = 0;
-    for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
-      sum += Real{outcome->probability} * later[outcome->next];
-    }
+    for (const auto& outcome : model_.outcomes[row]) sum += Real{outcome.probability} * later[outcome.next];
     return Real{model_.rewards[row]} + Real{model_.discount} * sum;
   }
 
@@ -131,9 +127,7 @@ class ListedBeliefs {
       matrix[state][state] = 1;
       const std::size_t row = model_.row(state, policy[state]);
       matrix[state][count] = model_.rewards[row];
-      for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
-        matrix[state][outcome->next] -= Real{model_.discount} * outcome->probability;
-      }
+      for (const auto& outcome : model_.outcomes[row]) matrix[state][outcome.next] -= Real{model_.discount} * outcome.probability;
     }
     for (std::size_t column = 0; column < count; ++column) {
       std::size_t pivot = column;

@@ -209,9 +209,7 @@ class Regret {
   Decision searched(Planner& planner, const std::string& name, const Belief& belief, int mission, int step) {
     const auto use = 2 + static_cast<std::uint64_t>(step);
     aos::Sampler random{mixed(options_.seed, static_cast<std::uint64_t>(mission), use)};
-    aos::Budget budget;
-    budget.seconds = options_.seconds;
-    budget.simulations = options_.simulations;
+    const aos::Budget budget{.simulations = options_.simulations, .seconds = options_.seconds};
     planner.search(kind_of(name), belief, budget, problem_.horizon, random);
     const aos::List<aos::ActionEstimate> estimates = planner.estimates(belief);
     const int action = planner.choice(estimates);

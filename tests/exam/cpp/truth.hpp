@@ -291,7 +291,7 @@ class Truth {
         const aos::List<double> later = blind[action];
         bounds.informed.push_back(nothing);
         each_running([&](std::size_t state) {
-          blind[action][state] = once_more(state, action, later);
+          blind[action][state] = flat_.value(state, action, later);
           bounds.informed[action][state] = informed_once_more(state, action, layers_[left - 1].informed);
         });
         bounds.alphas.push_back(blind[action]);
@@ -306,18 +306,17 @@ class Truth {
     Layer& bounds = layers_.front();
     aos::List<double> highest(flat_.states(), 0.0);
     aos::List<double> lowest(flat_.states(), 0.0);
-    for (std::size_t state = 0; state < flat_.states(); ++state) {
-      if (!flat_.problem().is_running(state)) continue;
+    each_running([&](std::size_t state) {
       highest[state] = largest;
       lowest[state] = -largest;
-    }
+    });
     // Each change keeps a bound a bound, so that passes may end at any time.
     repeat(0.2, [&] {
       double change = 0;
       each_running([&](std::size_t state) {
         double best = -std::numeric_limits<double>::infinity();
         for (std::size_t action = 0; action < flat_.actions(); ++action) {
-          best = std::max(best, once_more(state, action, highest));
+          best = std::max(best, flat_.value(state, action, highest));
         }
         change = std::max(change, highest[state] - best);
         highest[state] = std::min(highest[state], best);
@@ -329,7 +328,7 @@ class Truth {
       repeat(0.2 / static_cast<double>(flat_.actions()), [&] {
         double change = 0;
         each_running([&](std::size_t state) {
-          const double value = once_more(state, action, values);
+          const double value = flat_.value(state, action, values);
           change = std::max(change, value - values[state]);
           values[state] = std::max(values[state], value);
         });
@@ -366,14 +365,6 @@ class Truth {
     }
   }
 
-  // The action, and then what `later` says.
-  double once_more(std::size_t state, std::size_t action, const aos::List<double>& later) const {
-    double value = flat_.reward(state, action);
-    for (const Branch& branch : flat_.branches(state, action)) {
-      value += flat_.discount() * branch.probability * later[branch.next];
-    }
-    return value;
-  }
   static aos::List<double> best_of(const aos::List<aos::List<double>>& values) {
     aos::List<double> best = values.front();
     for (const auto& more : values) {

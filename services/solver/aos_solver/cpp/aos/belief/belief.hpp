@@ -323,8 +323,7 @@ class Belief {
   }
 
   std::pair<Belief, double> stepped(const HistoryStep& step, NumberSink& numbers, Sampler& random) const {
-    DrawnStep<Model> drawn{max_states(Source::enumeration), random};
-    auto updated = drawn.after(cloud_, !is_drawn(), step, numbers);
+    auto updated = drawn_step(cloud_, !is_drawn(), step, numbers, max_states(Source::enumeration), random);
     if (updated.cloud.particles.empty()) return {Belief{}, 0};
     return {Belief{std::move(updated.cloud)}, updated.probability};
   }

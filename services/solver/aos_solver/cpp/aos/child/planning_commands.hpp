@@ -80,8 +80,9 @@ class PlanningCommands {
     std::optional<typename Model::Without> without;
     if (!left_out.empty()) without.emplace(left_out);
     Sampler random{command.number<std::uint64_t>("seed")};
-    const GoalReach<Model> reach{beliefs_.belief_for(command), command.number<double>("seconds"), horizon_of<Model>(command), random};
-    json.begin_object().member("is_reachable", reach.is_reachable()).end_object();
+    const auto seconds = command.number<double>("seconds");
+    const bool can_reach = can_reach_goal(beliefs_.belief_for(command), seconds, horizon_of<Model>(command), random);
+    json.begin_object().member("is_reachable", can_reach).end_object();
   }
 
   // Lists the model from the current belief on. A call without a limit of states continues the listing before it.
