@@ -25,7 +25,7 @@ Bundle = Annotated[
     Path,
     typer.Argument(
         metavar="BUNDLE",
-        help="A directory of documents; or a deploy file, for its bundles, constraints, values and horizon",
+        help="A directory of documents; or a deploy file, for its bundles, constraints, values and limits",
     ),
 ]
 Seed = Annotated[
@@ -61,14 +61,14 @@ class SearchOptions(NamedTuple):
     ] = None
 
     def search_in(self, planned: Planned) -> Search:
-        """The search for decisions, with the deploy file's horizon where none is given.
+        """The search for decisions, with the deploy file's step limit, and its horizon where none is given.
 
         PlanningError where there is a policy that cannot be read.
         """
         fields = self._asdict()
         policy = fields.pop("policy")
         fields["horizon"] = self.horizon or planned.horizon
-        return following(Search(**fields), policy)
+        return following(Search(**fields, step_limit=planned.step_limit), policy)
 
 
 class GivenOptions(NamedTuple):

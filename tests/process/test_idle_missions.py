@@ -70,3 +70,24 @@ async def test_who_waits_for_what_happens_by_itself_is_not_idle():
     state, around = await _mission(opens, MissionLimits(step_limit=7, stop_below_value=0))
     assert state.ending == "step_limit"
     assert "changes nothing" not in around.decisions[0].why
+
+
+async def test_nothing_is_begun_that_the_step_limit_does_not_let_end():
+    writer = BundleWriter(
+        "mine",
+        "horizon: 4\ndiscount: 0.9\n\nstate_variable: int depth\n\ninitial_belief:\nstate.depth = 0;\n",
+    )
+    writer.skill(
+        "dig",
+        "state__.depth = state_.depth == 2 ? 0 : state_.depth + 1;\n__reward = state_.depth == 2 ? 9 : -1;",
+    )
+    writer.skill("gather", "__reward = 1;")
+    built = await built_text(writer.files)
+    _, around = await run_mission(
+        built,
+        lambda request: observed(request, "DefaultObservation"),
+        limits=MissionLimits(step_limit=5),
+        search=Search(simulations=200, seed=1, step_limit=5),
+    )
+    assert [each.action for each in around.decisions] == ["dig"] * 3 + ["gather"] * 2
+    assert [each.horizon for each in around.decisions] == [4, 4, 3, 2, 1]

@@ -26,7 +26,7 @@ aos: 1
 robot: tiger
 bundles: [{root}/deploy/bundles/bench/tiger]
 bus: {{listen: "{endpoint}"}}
-mission: {{goal_probability: 1.0, step_limit: 1_000_000, activation_timeout_s: 1000}}
+mission: {{goal_probability: 1.0, step_limit: 100_000, set_aside_after: 100_000, failure_limit: 100_000}}
 solver: {{simulations: 100, planner: pomcp, ponder_while_acting: false}}
 bind: {{/listen: {{python: robot.py:listen}}, /open: {{python: robot.py:open_door}}}}
 runs: runs
@@ -40,7 +40,7 @@ async def listen(call):
 async def open_door(call, door):
     await asyncio.Event().wait()
 """
-"""A mission that goes on costs nothing: its robot moves for ever."""
+"""A mission that goes on costs nothing: its robot moves until its time is over, again and again."""
 
 
 class Up:

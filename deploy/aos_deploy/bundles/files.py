@@ -86,8 +86,8 @@ def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes
 class Planned(msgspec.Struct, frozen=True):
     """The documents that a command plans with, and what a deploy file sets for the mission.
 
-    `sources` are the files in which constraints and values stand. `horizon` is None where the environment
-    document's counts.
+    `sources` are the files in which constraints and values stand. `horizon` and
+    `step_limit` are None where the environment document's horizon counts alone.
     """
 
     path: Path
@@ -97,6 +97,7 @@ class Planned(msgspec.Struct, frozen=True):
     values: tuple[MissionValue, ...] = ()
     sources: tuple[Path, ...] = ()
     horizon: int | None = None
+    step_limit: int | None = None
 
 
 def planned_of(path: Path) -> Planned:
@@ -113,6 +114,7 @@ def planned_of(path: Path) -> Planned:
         values=deployment.mission_values,
         sources=(deployment.path,),
         horizon=deployment.file.solver.horizon,
+        step_limit=deployment.file.mission.step_limit,
     )
 
 

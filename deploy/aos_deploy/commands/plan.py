@@ -83,7 +83,7 @@ def plan(
             if remark := remark_on_start(await engine.summary()):
                 typer.echo(f"aos: {remark}", err=True)
             if exact:
-                return await _exact_decision(engine, search.horizon)
+                return await _exact_decision(engine, search.horizon_at(1, engine))
             return await _searched_decision(engine, search)
 
     decision = planning_options.with_engine(planned, deciding.seed, given, decide)
@@ -104,7 +104,7 @@ def _suppositions(given: Iterable[str]) -> list[str]:
     return found
 
 
-async def _exact_decision(engine: Engine, horizon: int | None) -> Decision:
+async def _exact_decision(engine: Engine, horizon: int) -> Decision:
     try:
         return _decision((await engine.exact_values(horizon)).values, 0)
     except IntractableError as error:

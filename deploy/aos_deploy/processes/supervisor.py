@@ -203,8 +203,7 @@ class Supervisor:
             running = self._running[program.name]
             elapsed_s = self._clock.monotonic_s() - running.started_s
             try:
-                async with asyncio.timeout(program.start_s - elapsed_s):
-                    await running.ready.wait()
+                await running.child.in_time(running.ready.wait(), program.start_s - elapsed_s)
             except TimeoutError:
                 message = f"{program.name} was not ready within {program.start_s:g} s"
                 raise DeployError(message, code="AOS802", hint=self.look_at_log(program.name)) from None

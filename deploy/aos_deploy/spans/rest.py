@@ -1,11 +1,12 @@
 """The spans that are still to be sent when a run's processes have ended, such as that of the mission."""
 
-import asyncio
 import sys
 from contextlib import suppress
 
 from aos_deploy.deployment.adapters import SPANS
 from aos_deploy.runs.directory import RunDirectory
+from aos_protocol.errors import DeployError
+from aos_runtime.processes.children import Child
 
 REST = "rest"
 """The word after the settings for a process that sends once what there is, and ends."""
@@ -21,13 +22,8 @@ async def send_rest(run: RunDirectory, *, is_wanted: bool) -> None:
     settings = run.path / "settings" / f"{SPANS}.json"
     if not is_wanted or not settings.is_file():
         return
-    with suppress(OSError), run.open_log(SPANS) as log:
-        process = await asyncio.create_subprocess_exec(
-            sys.executable, "-m", "aos_deploy.spans", str(settings), REST, stdout=log, stderr=log
-        )
-        try:
-            async with asyncio.timeout(_REST_S):
-                await process.wait()
-        except TimeoutError:
-            process.kill()
-            await process.wait()
+    with suppress(OSError, DeployError), run.open_log(SPANS) as log:
+        argv = [sys.executable, "-m", "aos_deploy.spans", str(settings), REST]
+        child = await Child.start(argv, stdout=log, stderr=log)
+        if not await child.wait_for(_REST_S):
+            await child.stop()

@@ -221,10 +221,9 @@ class Child:
         return status
 
     async def wait_for(self, timeout_s: float) -> bool:
-        """Waits until it has ended, at most for a time; returns whether it has."""
+        """Waits until it has ended, at most for a time as `in_time` counts it; returns whether it has."""
         try:
-            async with asyncio.timeout(timeout_s):
-                await self.wait()
+            await self.in_time(self.wait(), timeout_s)
         except TimeoutError:
             return False
         return True

@@ -15,6 +15,8 @@ SEEDS_PER_MISSION = 1000
 class Search(msgspec.Struct, frozen=True, kw_only=True):
     """The budget of one decision: `time_s` if given, else `simulations`. `horizon` None is the document's.
 
+    After `step_limit` decisions the mission is over: what cannot come before is worth nothing.
+
     With a budget in time the search can go on while an action is carried out (`ponder_while_acting`). With a
     budget in simulations it never does: how far it came would depend on the machine, and decisions would not
     repeat.
@@ -24,6 +26,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
     seed: int
     time_s: float | None = None
     horizon: int | None = None
+    step_limit: int | None = None
     planner: Planner = DEFAULT_PLANNER
     threads: int = 1
     ponder_while_acting: bool = True
@@ -37,6 +40,11 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
         """The seed of decision `step`, in 64 bits, so that missions with neighbouring seeds share none."""
         return (self.seed * SEEDS_PER_MISSION + step) % 2**64
 
+    def horizon_at(self, step: int, engine: Engine) -> int:
+        """The number of decisions that decision `step` looks ahead, itself among them."""
+        horizon = self.horizon or engine.description.horizon
+        return horizon if self.step_limit is None else max(min(horizon, self.step_limit + 1 - step), 1)
+
     def after_takeover(self) -> Search:
         """The way to decide with a model that has taken over."""
         return self
@@ -47,7 +55,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
             simulations=None if self.time_s is not None else self.simulations,
             time_s=self.time_s,
             seed=self.seed_of(step),
-            horizon=self.horizon,
+            horizon=self.horizon_at(step, engine),
             planner=self.planner,
             threads=self.threads,
             within=within,

@@ -72,7 +72,7 @@ async def simulate_mission(
         name="simulated",
         limits=limits,
         # Nothing takes time in this world, so that there is none to look ahead in.
-        search=msgspec.structs.replace(search, ponder_while_acting=False),
+        search=msgspec.structs.replace(search, step_limit=limits.step_limit, ponder_while_acting=False),
         failures=_NO_CONSEQUENCES,
         is_cautious=False,
     )

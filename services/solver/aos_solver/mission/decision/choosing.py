@@ -123,8 +123,15 @@ class Chooser:
         if risks is not None and (refusal := self._budget.refusal(risks, index)):
             return Refused(refusal)
         predicted = (await engine.predict(index)).predicted
-        horizon = self.search.horizon or engine.description.horizon
-        plan = Plan(index, 0, horizon, (), predicted, 0.0, why=f"{asked.by} has asked for it")
+        plan = Plan(
+            index,
+            0,
+            self.search.horizon_at(step, engine),
+            (),
+            predicted,
+            0.0,
+            why=f"{asked.by} has asked for it",
+        )
         chosen_by: ChosenBy = "script" if asked.is_script else "operator"
         without, searches = self._without(engine).reasons, self._searches.told(are_dropped=True)
         return Choice(plan, risks, frozenset(), without, False, chosen_by, searches)
@@ -166,7 +173,7 @@ class Chooser:
                 continue
             is_free = not barred and not without.reasons
             self._idle = self._idle + 1 if plan.is_idle and is_free else 0
-            self._idle_horizon = plan.horizon
+            self._idle_horizon = max(self._idle_horizon, plan.horizon)
             ended = await self._ending(engine, plan, belief, without)
             gives_up = ended is not None and ended.ending in _GIVES_UP
             if gives_up and await self._passed_over.are_searched_anew():
@@ -266,6 +273,8 @@ class Chooser:
         if ending is None:
             return None
         remark = remark_of_ending(ending, belief, self._limits)
+        if plan.horizon < (self.search.horizon or engine.description.horizon):
+            remark += " in the decisions that the step limit leaves"
         return Ended(ending, ": ".join(filter(None, (remark, "; ".join(without.reasons.values())))))
 
     async def _repeated(self, model: RunningModel, allowed: set[int]) -> Plan | None:
