@@ -31,6 +31,9 @@ A = TypeVar("A", frames.Begun, frames.Done, frames.Observed, frames.Taken)
 _MARGIN_S = 1.0
 """An answer may take this much longer than the worker's own deadlines before the worker is killed."""
 
+_LARGE_BYTES = 100_000
+"""Results and messages that are larger take time to be read, such as pictures."""
+
 _END_S = 1.0
 _TRACEBACK_BYTES = 16 * 1024
 _FRAME = re.compile(r'^  File "(.*)", line (\d+) in ', re.MULTILINE)
@@ -177,20 +180,18 @@ class Evaluator:
             raise self._fault("AOS401", f"this cannot be handed to the mapping: {error}", None) from error
         is_answered = False
         try:
-            async with asyncio.timeout(timeout_s + _MARGIN_S):
-                child.stdin.write(frame)
-                await child.stdin.drain()
-                size = int.from_bytes(await child.stdout.readexactly(4), "big")
-                if size > frames.MAX_FRAME_BYTES:
-                    raise self._fault("AOS401", "the worker sent no message", None)
-                answer = frames.read_answer(await child.stdout.readexactly(size))
+            answer = await child.in_time(self._answer(child, frame), timeout_s + _MARGIN_S)
             is_answered = True
         except TimeoutError:
             if child.is_frozen():
                 raise self._fault(
                     "AOS401", "the worker was frozen by a signal, and is stopped", None
                 ) from None
-            raise self._fault("AOS403", "the code did not finish in time and was stopped", None) from None
+            message = "the code did not finish in time and was stopped"
+            hint = f"Give the mapping of {self.emitted.skill} what it reads, and not {len(frame):,} bytes"
+            raise self._fault(
+                "AOS403", message, None, hint=hint if len(frame) > _LARGE_BYTES else ""
+            ) from None
         except (asyncio.IncompleteReadError, BrokenPipeError, ConnectionResetError):
             limit_s = self._limits.load_s if isinstance(question, frames.Load) else self._limits.evaluation_s
             raise await self._why_it_ended(child, limit_s) from None
@@ -206,6 +207,14 @@ class Evaluator:
             await self.close()
             raise self._fault("AOS401", "the worker answered another question", None)
         return answer
+
+    async def _answer(self, child: Child, frame: bytes) -> frames.Answer:
+        child.stdin.write(frame)
+        await child.stdin.drain()
+        size = int.from_bytes(await child.stdout.readexactly(4), "big")
+        if size > frames.MAX_FRAME_BYTES:
+            raise self._fault("AOS401", "the worker sent no message", None)
+        return frames.read_answer(await child.stdout.readexactly(size))
 
     def _raised(self, answer: frames.Raised) -> MappingFault:
         fields = self.emitted.mapping.activation.fields
