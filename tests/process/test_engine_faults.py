@@ -87,6 +87,13 @@ async def refused(documents: dict[str, str]) -> Diagnostic:
     return refusal
 
 
+async def test_that_documents_lead_a_running_mission_to_no_goal_is_told():
+    lost = LAMP | {"lamp.ef": LAMP["lamp.ef"].replace("= 1;", "= 1, __isGoalState = true;")}
+    lost["press.sd"] = lost["press.sd"].replace("!state.is_on", "false")
+    warning = await refused(lost)
+    assert (warning.is_error, warning.code, str(warning.span)) == (False, "AOS132", "lamp.ef:4:1")
+
+
 def slow(name: str, rounds: int) -> str:
     """Code that takes so many rounds, of some 10 ns, to leave a variable as it is."""
     return (

@@ -41,7 +41,7 @@ def check_goals(environment: Environment, models: Iterable[SkillModel], findings
         words = '`"IsGoalState": true`' if is_json else "`is_goal_state: true`"
         hint = f"If it has a goal, let a special state say {words}, or its code `__isGoalState = true;`"
         findings.remark("AOS139", message, environment.span, hint)
-    elif not any(_may_be_goal(special) for special in endings):
+    elif not any(may_be_goal(special) for special in endings):
         unpaid = [special for special in endings if _is_neither(special)]
         if unpaid and any(_pays(model) for model in models):
             message = "no ending is a goal: the reward of this one is 0, whatever a skill pays for it"
@@ -57,7 +57,8 @@ def _may_end(special: SpecialState) -> bool:
     return special.is_goal or bool(special.is_failure) or any(word in code for word in _ENDING_WORDS)
 
 
-def _may_be_goal(special: SpecialState) -> bool:
+def may_be_goal(special: SpecialState) -> bool:
+    """Returns whether a special state may end the mission as a goal."""
     code = _code(special)
     if not code:
         is_goal = special.is_goal and not special.is_failure

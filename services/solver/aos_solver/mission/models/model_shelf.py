@@ -27,7 +27,7 @@ from aos_solver.building.thorough_builds import ThoroughBuilds
 from aos_solver.child.engine import Engine
 from aos_solver.mission.models.mission_values import NOWHERE, MissionValues
 from aos_solver.mission.models.past import Past
-from aos_solver.mission.models.push_trial import faults_in_trial
+from aos_solver.mission.models.push_trial import faults_in_trial, goal_out_of_reach
 from aos_solver.mission.models.takeover import RunningModel, Successor, Takeover
 
 log = logging.getLogger(__name__)
@@ -245,7 +245,7 @@ class ModelShelf:
 
     async def check(self, project: Project, running: RunningModel | None) -> tuple[Diagnostic, ...]:
         """Returns what keeps these documents from being used now: mistakes, no belief for the mission that
-        runs, or code that would end it."""
+        runs, or code that would end it. A goal that is out of reach is a warning."""
         span = project.environment.span
         try:
             built = await self._built(project)
@@ -263,7 +263,8 @@ class ModelShelf:
             hint = "Mend the initial belief, or end the mission and start it with the new documents"
             return (Diagnostic(Severity.ERROR, "AOS112", message, place, hint),)
         try:
-            return await faults_in_trial(engine, span)
+            faults = await faults_in_trial(engine, span)
+            return faults or await goal_out_of_reach(engine, project.environment)
         finally:
             await engine.close()  # It is stopped at once, also where nobody waits for its end.
 

@@ -2,7 +2,9 @@
 
 import msgspec
 
+from aos_language.check.endings import may_be_goal
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.documents import Environment
 from aos_protocol.errors import ModelError
 from aos_solver.child.engine import Engine
 
@@ -30,6 +32,16 @@ async def faults_in_trial(engine: Engine, environment: Span) -> tuple[Diagnostic
             Diagnostic(Severity.ERROR, error.code, error.message, environment, error.hint),
         )
     return ()
+
+
+async def goal_out_of_reach(engine: Engine, environment: Environment) -> tuple[Diagnostic, ...]:
+    """Warns where actions lead to none of the goals, as far as is seen in a second."""
+    goals = [special.span for special in environment.special_states if may_be_goal(special)]
+    if not goals or (await engine.may_reach_goal()).is_reachable:
+        return ()
+    message = "a mission runs, and with these documents no way to a goal is found"
+    hint = "Push a skill that leads to one, or end the mission"
+    return (Diagnostic(Severity.WARNING, "AOS132", message, goals[0], hint),)
 
 
 async def _slow(engine: Engine, step_s: float, environment: Span) -> Diagnostic:
