@@ -80,6 +80,8 @@ def test_a_part_in_the_wrong_section_is_an_error_that_names_its_own():
     _, errors = sections("path: /p\nresponse: a\nresponse_rule: True\ntopic: /t\nparameter: x", ".am")
     places = ["`module_activation:`", "`local_variable:`", "`module_activation:`"]
     assert [error.hint for error in errors] == [f"It belongs below {place}" for place in places]
+    _, (error,) = sections("module_activation: ros_service\npath: /p\ntype: std_srvs/Trigger", ".am")
+    assert error.hint == "The type of a service or action is `srv:`"
 
 
 def test_the_parts_of_a_section_are_its_own():

@@ -341,8 +341,11 @@ class _Scanner:
         if place is None and self._is_in_code():
             return False
         hint = f"It belongs {place}" if place else f"The sections are {', '.join(self._grammar)}"
-        if name == "code" and self._sections and self._sections[-1].word == "special_state":
+        section = self._sections[-1].word if self._sections else ""
+        if (name, section) == ("code", "special_state"):
             hint = "Write `reward_code:` in place of `special_state:`"
+        elif (name, section) == ("type", "module_activation"):
+            hint = "The type of a service or action is `srv:`"
         words = set(re.findall(r"`\w+:`", hint))
         if not words & self._misplaced:  # What belongs to one missing word is told once.
             self._findings.error("AOS102", f"`{name}:` has no place here", at.span, hint)
