@@ -68,7 +68,8 @@ class SearchOptions(NamedTuple):
         fields = self._asdict()
         policy = fields.pop("policy")
         fields["horizon"] = self.horizon or planned.horizon
-        return following(Search(**fields, step_limit=planned.step_limit), policy)
+        step_limit = planned.limits.step_limit if planned.limits else None
+        return following(Search(**fields, step_limit=step_limit), policy)
 
 
 class GivenOptions(NamedTuple):

@@ -19,6 +19,7 @@ from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.documents import Constraint, MissionValue, Project
 from aos_protocol.errors import DeployError, DocumentError
+from aos_solver.mission.rules.endings import MissionLimits
 
 MEND = "Mend the places named above"
 
@@ -86,8 +87,8 @@ def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes
 class Planned(msgspec.Struct, frozen=True):
     """The documents that a command plans with, and what a deploy file sets for the mission.
 
-    `sources` are the files in which constraints and values stand. `horizon` and
-    `step_limit` are None where the environment document's horizon counts alone.
+    `sources` are the files in which constraints and values stand. `horizon` is None where the environment
+    document's counts, and `limits` where none end a mission.
     """
 
     path: Path
@@ -97,7 +98,7 @@ class Planned(msgspec.Struct, frozen=True):
     values: tuple[MissionValue, ...] = ()
     sources: tuple[Path, ...] = ()
     horizon: int | None = None
-    step_limit: int | None = None
+    limits: MissionLimits | None = None
 
 
 def planned_of(path: Path) -> Planned:
@@ -114,7 +115,7 @@ def planned_of(path: Path) -> Planned:
         values=deployment.mission_values,
         sources=(deployment.path,),
         horizon=deployment.file.solver.horizon,
-        step_limit=deployment.file.mission.step_limit,
+        limits=msgspec.convert(deployment.file.mission, MissionLimits, from_attributes=True),
     )
 
 

@@ -12,7 +12,7 @@ import msgspec
 import typer
 
 from aos_deploy import planning_options
-from aos_deploy.bundles.files import planned_of
+from aos_deploy.bundles.files import Planned, planned_of
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, finite
@@ -39,28 +39,44 @@ Target = Annotated[
     Path,
     typer.Argument(
         metavar="BUNDLE",
-        help="A directory of documents; a deploy file, for its bundles, constraints, values and horizon; or, "
+        help="A directory of documents; a deploy file, for its bundles, constraints, values and limits; or, "
         "with --policy, a .pomdp or .pomdpx file",
     ),
 ]
 
 
 class MissionOptions(NamedTuple):
-    """The number of missions, and the conditions that end each."""
+    """The number of missions, and the conditions that end each: else those of the deploy file."""
 
     runs: Annotated[int, typer.Option(min=1, help="How many missions")] = 10
     goal_probability: Annotated[
-        float, typer.Option(min=0.001, max=1, callback=finite, help="Ends a mission when reached")
-    ] = 0.9
+        float | None,
+        typer.Option(
+            min=0.001,
+            max=1,
+            callback=finite,
+            help="Ends a mission when reached; else the deploy file's, or 0.9",
+        ),
+    ] = None
     step_limit: Annotated[
         int | None,
         typer.Option(
-            min=1, help="Ends a mission when reached; else 30, of a problem file all steps that count"
+            min=1,
+            help="Ends a mission when reached; else the deploy file's, or 30; problem files have their own",
         ),
     ] = None
     stop_below_value: Annotated[
-        float | None, typer.Option(callback=finite, help="Ends a mission when no action can return so much")
+        float | None,
+        typer.Option(
+            callback=finite, help="Ends a mission when no action can return so much; else the deploy file's"
+        ),
     ] = None
+
+    def limits_in(self, planned: Planned) -> MissionLimits:
+        """The limits that are given, and for the rest those of the deploy file."""
+        given = {name: value for name, value in self._asdict().items() if value is not None}
+        del given["runs"]
+        return msgspec.structs.replace(planned.limits or MissionLimits(), **given)
 
 
 @command("Example: aos simulate deploy/bundles/armadillo-finer --runs 20")
@@ -83,11 +99,6 @@ def simulate(
     become of the world; what the belief held for the goal is told beside.
     Ctrl-C ends it early and tells of the missions that have ended.
     """
-    limits = MissionLimits(
-        goal_probability=missions.goal_probability,
-        step_limit=missions.step_limit or 30,
-        stop_below_value=missions.stop_below_value,
-    )
     first, runs = deciding.seed, missions.runs
     done: list[SimulatedRun] = []
     is_problem = bundle.suffix in PROBLEM_ENDINGS and not bundle.is_dir()
@@ -99,6 +110,7 @@ def simulate(
         else:
             planned = planned_of(bundle)
             search = deciding.search_in(planned)
+            limits = missions.limits_in(planned)
             play = partial(_play, search=search, limits=limits, runs=runs, with_states=states, done=done)
             planning_options.with_engine(planned, first, given, play)
     except KeyboardInterrupt:
