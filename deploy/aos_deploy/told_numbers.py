@@ -55,4 +55,4 @@ def _example(param: Any) -> float:
     if isinstance(param.default, (int, float)):
         return param.default
     least, most = getattr(param.type, "min", None), getattr(param.type, "max", None)
-    return 0.5 if (least, most) == (0, 1) else max(least or 1, 1)
+    return 0.5 if most == 1 else max(least or 1, 1)

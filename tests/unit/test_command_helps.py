@@ -116,7 +116,7 @@ def test_a_command_is_found_behind_two_dashes(arguments):
         ("solve x --discount 2", "'--discount': 2.0 is not a number from 0 to 1, such as 0.5"),
         (
             "simulate x --goal-probability 2",
-            "'--goal-probability': 2.0 is not a number from 0.001 to 1, such as 0.9",
+            "'--goal-probability': 2.0 is not a number from 0.001 to 1, such as 0.5",
         ),
         ("plan x --time soon", "'--time': 'soon' is not a number from 0.001 to 604800.0, such as 1"),
         ("serve --port -1", "'--port': -1 is not a whole number from 0 to 65535, such as 7480"),
