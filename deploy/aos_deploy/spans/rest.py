@@ -26,4 +26,5 @@ async def send_rest(run: RunDirectory, *, is_wanted: bool) -> None:
         argv = [sys.executable, "-m", "aos_deploy.spans", str(settings), REST]
         child = await Child.start(argv, stdout=log, stderr=log)
         if not await child.wait_for(_REST_S):
-            await child.stop()
+            child.kill()
+            await child.wait()
