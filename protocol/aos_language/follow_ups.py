@@ -15,6 +15,8 @@ _UNREAD = frozenset(("AOS101", "AOS102", "AOS103", "AOS104", "AOS107", "AOS108")
 _STRAY = "AOS104"
 _OF_NAMES = frozenset(("AOS110", "AOS116", "AOS123", "AOS201"))
 _NEEDS_DECLARATION = frozenset(("AOS110", "AOS116", "AOS119"))
+_OF_CODE = frozenset(("AOS122", "AOS149"))
+"""What a piece of code says by itself."""
 _UNUSED = frozenset(("AOS117", "AOS133"))
 _SHOWN = 6
 
@@ -22,7 +24,8 @@ _SHOWN = 6
 def told_once(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Returns the findings without those that follow from others.
 
-    Left out are warnings and remarks on a file with errors. Where text is not taken up, so is what its file
+    Left out are warnings and remarks on a file with errors, but for those on other lines that a piece of code
+    says by itself. Where text is not taken up, so is what its file
     lacks. Where it is not, or an object of JSON lacks a key, so are names that nothing declares and no other
     name is near, in files that use what it declares. What nothing uses is not told where an unknown name may
     have meant it. A compiler's error is left out where another error stands before it in its line. A name
@@ -43,7 +46,9 @@ def told_once(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
         if not one.is_error:
             names = meant if one.code in _UNUSED else ()
             stands_here = (one.excerpt.startswith(name, one.span.column - 1) for name in names)
-            return one.span.file in wrong or any(stands_here)
+            is_apart = one.code in _OF_CODE and one.span.file not in unread
+            is_apart = is_apart and (one.span.file, one.span.line) not in lines
+            return (one.span.file in wrong and not is_apart) or any(stands_here)
         match one.code:
             case "AOS105":
                 return one.span.file in unread

@@ -180,6 +180,15 @@ def test_a_skill_with_a_mistake_has_no_second_one_where_the_environment_looks_at
     assert [(one["code"], _place(one["span"])) for one in errors] == [("AOS106", "walk.sd:4")]
 
 
+def test_what_to_write_for_a_distribution_is_told_beside_an_unknown_name(hall: Callable[..., Path]):
+    folder = hall("std::bernoulli_distribution far(0.9);\nstate__.place = far(own) + state.plaze;")
+    told = linted(folder, exit_code=1)
+    assert {code: place for code, (_, place, *_) in told.items() if code in ("AOS110", "AOS124")} == {
+        "AOS110": "walk.sd:5",
+        "AOS124": "walk.sd:4",
+    }
+
+
 def test_code_that_computes_too_long_while_it_is_compiled_is_refused(hall: Callable[..., Path], monkeypatch):
     monkeypatch.setattr(building, "MODEL_CPU_S", 1.0)
     monkeypatch.setattr(building, "ENGINE_SHARE", 0.0)

@@ -183,6 +183,31 @@ CODE = {
         "__reward += state__.stock.at(2); state__.stock = state.stock;",
         5 + 7 + 1 + 100 + 12,
     ),
+    "held": (
+        "vector<int>* all[2] = {&state__.row, &state__.other}; vector<int>& one = *all[1]; one.push_back(1);"
+        "std::map<int, std::vector<int>*> by; by[4] = &state__.last; vector<int>* none = nullptr, *mine;"
+        "mine = all[0]; if (!none) none = &state__.row; const vector<int>* fixed[] = {&state.row};"
+        "auto pick = [&](int n) -> vector<int>& { return n > 2 ? state__.last : state__.row; };"
+        "pick(amount)[0] = 9; for (vector<int>* each : all) __reward += each->size();"
+        "std::string* text = nullptr; text = &state__.note; *text += 'x'; state__.note = state.note;"
+        "__reward += 10 * by[4]->front() + none->size() + mine->size() + fixed[0]->size();"
+        "state__.other = state.other; state__.last = state.last;",
+        6 + 90 + 9,
+    ),
+    "seen": (
+        "const vector<int>& row = state__.row; state__.row[0] = 8; const string& note = state__.note;"
+        'state__.note = "ab"; for (const vector<int>& line : state__.grid) { state__.grid[1][0] = 7;'
+        "__reward = __reward * 10 + line[0]; } __reward += 100 * row[0] + 1000 * note.size();"
+        "state__.row = state.row; state__.note = state.note; state__.grid = state.grid;",
+        17 + 800 + 2000,
+    ),
+    "values": (
+        "vector<Chosen> all = state.ChosenObjects, none; auto more = all; more = state.ChosenObjects;"
+        "auto last = state.ChosenObjects; last.push_back(Red);"
+        "auto count = [](const vector<Chosen>& some) { return some.size(); }; none = state.ChosenObjects;"
+        "__reward = count(state.ChosenObjects) + 10 * last.size() + 100 * (none == more);",
+        2 + 30 + 100,
+    ),
     "method": (
         "struct Half { int n; Half(int m) : n(m / 2) {} }; static int const four = 4; Half half(amount);"
         "int most(std::max(amount, half.n)); __reward = half.n * four + most;",

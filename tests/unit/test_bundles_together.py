@@ -46,6 +46,16 @@ def test_a_deploy_file_stands_for_its_bundles_and_what_it_sets(tmp_path):
     assert (linted.exit_code, "0 errors" in linted.stdout) == (0, True)
 
 
+def test_a_bound_path_that_no_skill_calls_is_told_with_the_one_that_is_meant(tmp_path):
+    bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
+    deploy = tmp_path / "yard.yaml"
+    adapters = "adapters:\n  arm: {command: [arm]}\nbind:\n  /later: arm\n  /psuh: arm\n"
+    deploy.write_text(f"aos: 1\nrobot: yard\nbundles: [yard]\n{adapters}")
+    told = aos("lint", deploy, "--no-compile").stdout
+    assert "yard.yaml:8:3: warning[AOS110]: no skill calls /psuh. Did you mean `/push`?" in told
+    assert "/later" not in told, "a skill may come"
+
+
 def test_a_folder_with_one_deploy_file_stands_for_it(tmp_path):
     bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
     (tmp_path / "yard.yaml").write_text("aos: 1\nrobot: yard\nbundles: [yard]\n")

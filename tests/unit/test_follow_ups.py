@@ -62,6 +62,12 @@ def test_a_mistake_is_told_without_what_follows_from_it(change, place):
     assert only.startswith(place)
 
 
+def test_what_code_says_by_itself_is_told_beside_an_error_of_another_line():
+    code = "__reward = 1/2;\n__reward += state.thrid + 1/2;\n"
+    changed = told(("skill", "state__.second", f"{code}state__.second"))
+    assert [one.split()[:2] for one in changed] == [["walk.sd:9", "AOS149"], ["walk.sd:10", "AOS110"]]
+
+
 def test_a_name_that_nothing_declares_is_told_once_with_its_places():
     (only,) = told(("environment", "state_variable: Cell second", "state_variable: Cell secnd"))
     assert only.startswith("hall.ef:13 AOS110")

@@ -190,6 +190,16 @@ def test_code_that_does_nothing_or_loses_a_fraction_is_told(code, told):
         ("state__.first = state__.first;", "`state__.first` is set to itself"),
         ("if (steps > 1) ; else; __reward = 1;", "this semicolon ends the `else`"),
         ("__reward =- 1;", "`=-` subtracts nothing: it sets"),
+        ("__reward = -1; __reward = state.first.x;", "`__reward` is set again before anything reads it"),
+        ("state__.first.x = 1; /* so */ state__.first.x = AOS.Bernoulli(0.5);", "`state__.first.x` is set"),
+        ("__reward = 1; __reward = __reward * 2; __reward += 1;", ""),
+        ("auto twice = [&] { return 2 * __reward; }; __reward = 1; __reward = twice();", ""),
+        ("auto* first = &state__.first; state__.first.x = 1; state__.first.x = first->x + 1;", ""),
+        ("bool b = AOS.Bernoulli(1 - steps / 4); return;", "`steps / 4` is a whole number: the fraction"),
+        ("int n = 3; bool b = AOS.Bernoulli(state.first.x / n); return;", "`state.first.x / n` is a whole"),
+        ("int n = AOSUtils::SampleDiscrete(vector<double>{1 / steps}); return;", "`1 / steps` is a whole"),
+        ("bool b = AOS.Bernoulli(1.0 * steps / 4) + AOS.Bernoulli(0.5 / steps); return;", ""),
+        ("double n = 2; bool b = AOS.Bernoulli((double)steps / 4) + AOS.Bernoulli(steps / n); return;", ""),
         ("bool b = steps > 1 && 0.9; if (b) return;", "`0.9` is always true here"),
         ("switch (steps) { case 1: __reward = 1; case 2: break; case 3: __reward = 2; }", ""),
         ("bool b = steps == 1 || steps == 2 && state.side != Left; if (!b == b || b) return;", ""),
@@ -202,6 +212,25 @@ def test_code_that_says_other_than_it_means_is_told(code, told):
     all_told = found(environment=environment, skill=skill_after(code))
     texts = [each.message for each in all_told if each.code == "AOS149"]
     assert [text[: len(told)] for text in texts] == [told] * bool(told)
+
+
+@pytest.mark.parametrize(
+    ("code", "is_told"),
+    [
+        ("if (steps > 1) __meetPrecondition = true;", True),
+        ("__meetPrecondition |= steps > 1;", True),
+        ("__meetPrecondition = __meetPrecondition || steps > 1;", True),
+        ("__meetPrecondition = false; if (steps > 1) __meetPrecondition = true;", False),
+        ("__meetPrecondition = true; __meetPrecondition &= steps > 1;", False),
+        ("__meetPrecondition = true;", False),
+    ],
+)
+def test_a_precondition_that_code_only_meets_is_told(code, is_told):
+    texts = finding_texts(skill=SKILL.replace("dynamic_model:", f"precondition:\n{code}\n\ndynamic_model:"))
+    told = "9 AOS147 this precondition is never false: __meetPrecondition starts as true. "
+    assert [text[: len(told)] == told for text in texts if "AOS147" in text and "keeps" not in text] == [
+        True
+    ] * is_told
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """`aos lint` and `aos inspect`: documents checked and looked at, without a running system."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
@@ -8,12 +9,13 @@ from typing import Annotated
 
 import typer
 
-from aos_deploy.bundles.files import planned_of, project_at, refusal, with_mission
+from aos_deploy.bundles.files import deployment_at, planned_of, project_at, refusal, with_mission
 from aos_deploy.bundles.sarif import sarif_log
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments
-from aos_deploy.printing import count, print_diagnostics, print_json
+from aos_deploy.printing import count, from_here, print_diagnostics, print_json
+from aos_language.findings import Findings
 from aos_language.follow_ups import told_once
 from aos_language.load import load_files, with_excerpts
 from aos_language.outline import outline
@@ -22,6 +24,7 @@ from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DeployError
+from aos_protocol.spelling import nearest
 
 
 class Format(StrEnum):
@@ -80,7 +83,7 @@ def lint(
         told = {(finding.span.file, finding.span.line) for finding in found if finding.is_error}
         more = _compiler_errors(files, loaded.draft)
         found = (*found, *(error for error in more if (error.span.file, error.span.line) not in told))
-    found = told_once(found)
+    found = (*told_once(found), *_bound_in_vain(path, loaded.project or loaded.draft))
     counts = Counter(diagnostic.severity for diagnostic in found)
     if as_json or form is Format.JSON:
         print_json(
@@ -113,6 +116,24 @@ def _files_of(bundles: Iterable[Path]) -> tuple[dict[str, bytes], list[Diagnosti
         files |= planned.files
         remarks += planned.remarks
     return files, remarks
+
+
+def _bound_in_vain(path: Path, project: Project | None) -> tuple[Diagnostic, ...]:
+    """The paths of a deploy file's `bind:` that no skill calls, and that are nearly those that one calls."""
+    deployment = deployment_at(path)
+    if deployment is None or project is None:
+        return ()
+    called = {skill.mapping.activation.path for skill in project.skills}
+    bound = {bind for plan in deployment.adapters for bind in plan.bind}
+    text, name = deployment.path.read_bytes(), str(from_here(deployment.path))
+    findings = Findings()
+    for wrong in sorted(bound - called):
+        if close := nearest(wrong, called - bound):
+            lines = text.decode().splitlines()
+            place = next(n for n, line in enumerate(lines, 1) if re.search(rf"{re.escape(wrong)}\b", line))
+            span = Span(name, place, lines[place - 1].index(wrong) + 1)
+            findings.warning("AOS110", f"no skill calls {wrong}", span, f"Did you mean `{close}`?")
+    return with_excerpts(findings.sorted(), {name: text})
 
 
 def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) -> tuple[Diagnostic, ...]:
@@ -156,7 +177,8 @@ def _compiler_errors(files: Mapping[str, bytes], draft: Project) -> tuple[Diagno
     except AosError as error:
         # A skill that is left out for a mistake of its own has no parameters that code may look at.
         absent = [f"{name}->" for name in skills_looked_for(draft)]
-        found = with_excerpts((found for found in error.diagnostics if found.code == "AOS201"), files)
+        told = [found for found in error.diagnostics if found.code in ("AOS124", "AOS201")]
+        found = with_excerpts(told, files)
         return tuple(one for one in found if not any(parameter in one.excerpt for parameter in absent))
     return ()
 

@@ -19,6 +19,7 @@ _GIVING = re.compile(
 _OF_STATE = re.compile(r"\*?state_*\.")
 _PART_OF_STATE = re.compile(r"\*?state_*(?:(?:\.|->)\w+|\[[\w.]+\])*")
 _STEADY = re.compile(r"[\w.\[\]]+")
+_LIBRARY = re.compile(r"(?:AOS\w*|std)\W.*|__\w+|\w*(?:max|min|pow|sqrt|abs|round|int|double)", re.DOTALL)
 _LEAVING = ("break_statement", "continue_statement", "goto_statement", "return_statement", "throw_statement")
 
 
@@ -47,6 +48,7 @@ def odd_parts(node: tree_sitter.Node) -> Iterator[Odd]:
             yield Odd(whole, f"nothing takes what `{function}` gives", f"Write `NAME = {text_of(whole)};`")
         elif whole.type == "assignment_expression":
             yield from _set_oddly(whole)
+            yield from _set_again(whole, node)
     elif node.type == "declaration":
         yield from _copied_variable(node)
     elif node.type == "for_range_loop":
@@ -108,6 +110,26 @@ def _set_oddly(setting: tree_sitter.Node) -> Iterator[Odd]:
         yield Odd(setting, f"`{name}` is set to itself", "Take it out, or name what it is to be")
     elif right.start_byte == sign.end_byte and re.match(r"-\s", text_of(right)):
         yield Odd(sign, "`=-` subtracts nothing: it sets", "To subtract, write `-=`")
+
+
+def _set_again(setting: tree_sitter.Node, statement: tree_sitter.Node) -> Iterator[Odd]:
+    """Yields what the next statement sets anew without having read it."""
+    later = statement.next_named_sibling
+    while later is not None and later.type == "comment":
+        later = later.next_named_sibling
+    after = later.named_children[0] if later is not None and later.named_children else None
+    if after is None or after.type != "assignment_expression" or later.type != "expression_statement":
+        return
+    name, signs = field_text(setting, "left"), {operator_of(setting), operator_of(after)}
+    if signs != {"="} or name != field_text(after, "left") or not _STEADY.fullmatch(name):
+        return
+    value = field_of(after, "right")
+    calls = [field_text(part, "function") for part in below(value) if part.type == "call_expression"]
+    parts = re.findall(r"\w+", name)
+    reads = re.search(rf"\b{parts[0]}\b|->\s*{parts[-1]}\b", text_of(value))
+    if reads is None and all(_LIBRARY.fullmatch(call) for call in calls):
+        told = f"`{name}` is set again before anything reads it"
+        yield Odd(setting.children[0], told, f"Take one out; to add to it, write `{name} += ...;`")
 
 
 def _only_breaks(case: tree_sitter.Node | None) -> bool:

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from aos_language.check.models.blocks import DURATION, Block, environment_blocks, read_block, skill_blocks
 from aos_language.check.scope import Scope, ValueType
-from aos_language.cpp.keywords import STATES
+from aos_language.cpp.keywords import DRAW_SOURCES, STATES
 from aos_language.cpp.snippets import Access, Cpp, Extent, Mention
 from aos_language.findings import Findings
 from aos_protocol.documents import Environment
@@ -14,6 +14,8 @@ from aos_protocol.documents import Environment
 _COMPARED = re.compile(r"\s*[=!]=\s*(-?\d*\.\d+)(?!\s*[-+*/]|[\w.])")
 _COMPUTED = re.compile(r"[\w)\]]\s*[-+*/]|AOS\.Sample(?:Normal|Uniform)")
 _FRACTION = re.compile(r"\s*[-+]?\d*\.\d*[1-9]\d*f?\s*")
+_DIVISION = re.compile(r"(?<![\w.)\]])\b([\w.]+)\s*/\s*([\w.]+)(?![\w.(\[])")
+_CALCULATED = re.compile(r"[*/<>=]\s*$")
 _REAL = re.compile(r"(?<![\w.])\d*\.\d+|AOS\.Sample(?:Normal|Uniform)\b")
 _ROUNDED = re.compile(r"[?<>=!]|\b(?:round|lround|floor|ceil|trunc|int)\b")
 _SET = re.compile(r"\s*[-+]?=\s*")
@@ -30,6 +32,13 @@ def check_decimals(environment: Environment, scope: Scope, findings: Findings) -
     for block, cpp in read:
         for mention in cpp.mentions:
             _check_compared(mention, block, cpp, computed, scope, findings)
+        for divided in _divided_wholes(block, cpp, scope):
+            span = block.snippet.locate(divided.line, divided.column)
+            text = cpp.code[divided.start : divided.end]
+            message = f"`{text}` is a whole number: the fraction of this probability is cut off"
+            first, rest = text.split("/", 1)
+            real = f"{first.strip()}.0 /{rest}" if first.strip().isdigit() else f"1.0 * {text}"
+            findings.warning("AOS149", message, span, f"Write `{real}`")
         for name, given in _wholes(block, cpp, scope):
             text = cpp.code[given.start : given.end].strip()
             span = block.snippet.locate(given.line, given.column)
@@ -76,6 +85,25 @@ def _wholes(block: Block, cpp: Cpp, scope: Scope) -> Iterator[tuple[str, Extent]
             yield declared.name, given
     if block.type == "int" and _FRACTION.fullmatch(cpp.code):
         yield block.sets, Extent(0, len(cpp.code), 1, 1)
+
+
+def _divided_wholes(block: Block, cpp: Cpp, scope: Scope) -> Iterator[Extent]:
+    """The divisions of whole numbers that stand in probabilities and weights."""
+    kinds = {each.name: each.type.removeprefix("const ") for each in cpp.declarations}
+    kinds |= {
+        cpp.code[each.extent.start : each.extent.end]: _type_of(each.path, block, scope)
+        for each in cpp.mentions
+        if each.path[0] not in kinds
+    }
+    for call in cpp.calls:
+        if not {*call.name[:1]} & DRAW_SOURCES or call.name[-1] not in ("Bernoulli", "SampleDiscrete"):
+            continue
+        for argument in call.arguments:
+            for found in _DIVISION.finditer(cpp.code, argument.start, argument.end):
+                sides = [side for side in found.groups() if not side.isdigit()]
+                are_whole = sides and all(kinds.get(side) in ("int", "size_t", "unsigned") for side in sides)
+                if are_whole and not _CALCULATED.search(cpp.code, argument.start, found.start()):
+                    yield Extent.of(cpp.code, *found.span())
 
 
 def _computed(cpp: Cpp) -> Iterator[str]:

@@ -4,6 +4,7 @@ precondition does not hold."""
 import re
 from collections.abc import Iterable
 
+from aos_language.cpp.snippets import Access
 from aos_language.document_code import snippets_of
 from aos_language.findings import Findings
 from aos_protocol.documents import Assignment, SkillModel
@@ -11,6 +12,8 @@ from aos_protocol.documents import Assignment, SkillModel
 _MEETS = "__meetPrecondition"
 _ALWAYS = re.compile(rf"\s*(?:{_MEETS}\s*=\s*(?:true|1)\s*;?\s*)?")
 """Code that says that a skill may always be used."""
+_TRUE = re.compile(rf"\s*=\s*(?:true|1|{_MEETS}\s*\|\|.*)|\s*\|=.*", re.DOTALL)
+"""What leaves a precondition met that is met already."""
 
 
 def check_precondition(model: SkillModel, findings: Findings) -> None:
@@ -26,6 +29,10 @@ def check_precondition(model: SkillModel, findings: Findings) -> None:
         message = f"{model.name} earns {model.violation_penalty:g} where this does not hold"
         hint = f"A penalty is added to the reward: write -{model.violation_penalty:g}"
         findings.warning("AOS147", message, span, hint)
+    if _is_never_false(model.precondition):
+        message = f"this precondition is never false: {_MEETS} starts as true"
+        findings.warning("AOS147", message, span, f"Begin with `{_MEETS} = false;`")
+        return
     if model.violation_penalty or not _mentions(model.precondition) or _mentions(model.dynamic_model):
         return
     if all(_ALWAYS.fullmatch(snippet.code) for snippet, _ in snippets_of(model.precondition)):
@@ -34,6 +41,19 @@ def check_precondition(model: SkillModel, findings: Findings) -> None:
     penalty = '"ViolatingPreconditionPenalty"' if span.file.endswith(".json") else "violate_penalty"
     hint = f"Add `{penalty}: -10`, or say in the dynamic model what happens where {_MEETS} is false"
     findings.remark("AOS147", message, span, hint)
+
+
+def _is_never_false(block: Iterable[Assignment]) -> bool:
+    """Returns whether code looks at something, and sets that the precondition holds wherever it sets it."""
+    snippets = [cpp for _, cpp in snippets_of(block)]
+    sets = [
+        cpp.code[mention.extent.end : mention.assigned.end if mention.assigned is not None else None]
+        for cpp in snippets
+        for mention in cpp.mentions
+        if mention.path == (_MEETS,) and mention.access is not Access.READ
+    ]
+    looks = any(mention.path[0] != _MEETS for cpp in snippets for mention in cpp.mentions)
+    return looks and bool(sets) and all(_TRUE.fullmatch(text) for text in sets)
 
 
 def _mentions(block: Iterable[Assignment]) -> bool:

@@ -7,6 +7,7 @@ block of code fills with constants anew in each run costs more than the rest of 
 import re
 from collections.abc import Iterator
 
+from aos_language.cpp.bound import path_bound
 from aos_language.cpp.keywords import DRAW_SOURCES, STATES
 from aos_language.cpp.snippets import Access, Call, Cpp, Declaration, DeclarationKind, blanked, strip_comments
 
@@ -17,6 +18,10 @@ _CONTAINER_POINTER = re.compile(_CONTAINER_REFERENCE.pattern.replace("&", r"\*")
 _FUNCTION_OF_REFERENCE = re.compile(
     r"((?:std\s*::\s*)?function\s*<.*(?:vector|map|string)\b[^;]*&[^;]*>)\s*$"
 )
+_HELD = re.compile(
+    r"(->\s*(?:const\s+)?)?\b((?:std\s*::\s*)?(?:(?:vector|map|set|pair)\s*<(?:[^<>;(){}]|<[^<>]*>)*>|string))\s*([*&])"
+)
+_NO_ADDRESS = re.compile(r"\s*(?:nullptr|NULL|0)\s*|\s*\{.*", re.DOTALL)
 _STD = re.compile(r"std\s*::\s*")
 _OF_STATE = frozenset({"erase", "erase_if", "getline", "swap"})
 _ITERATOR = re.compile(
@@ -39,7 +44,10 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
     - `vector<int>::iterator at = state__.row.begin();` becomes `auto at`, also from `auto& row = state__.row`
     - `vector<bool>::reference bit = state__.bits[1];` becomes `auto&& bit`
     - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`
+    - `const vector<int>& row = state__.row;` becomes `const auto& row` where the code changes that row
     - `vector<int>* row = &state__.row;` becomes `auto* row`
+    - other pointers to containers, `vector<int>* rows[] = {&state__.row}`, become those of `aos::Held`
+    - what a lambda returns, `-> vector<int>&`, becomes `-> auto&`
     - `std::function<void(vector<int>&)> grow = [](...) {...}` becomes `auto grow`
     - `mine.swap(state__.row)` becomes `swap(mine, state__.row)`
     - `state__.bits[1].flip()` becomes `aos::flip(state__.bits[1])`
@@ -73,13 +81,15 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
         elif declaration.type.endswith("iterator") and _leads_to_state(cpp, declaration):
             if (iterator := _ITERATOR.search(before)) is not None:
                 yield iterator.start(1), iterator.end(1), "auto"
-        elif declaration.type.endswith("&") and not declaration.type.startswith("const"):
+        elif declaration.type.endswith("&"):
             reference = _CONTAINER_REFERENCE.search(before)
-            if reference is not None and _may_bind_state(cpp, declaration, before):
+            is_const = declaration.type.startswith("const")
+            binds = _sees_changes(cpp, declaration) if is_const else _may_bind_state(declaration, before)
+            if reference is not None and binds:
                 yield reference.start(1), reference.end(1), "auto"
         elif declaration.type.endswith("*"):
             pointer = _CONTAINER_POINTER.search(before)
-            if pointer is not None and _holds(declaration, _places_of_state(cpp)):
+            if pointer is not None and _starts_with_one(cpp, declaration):
                 yield pointer.start(1), pointer.end(1), "auto"
         elif declaration.kind is DeclarationKind.VARIABLE and declaration.initial is not None:
             vector = _VECTOR.search(before)
@@ -88,13 +98,41 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
                 yield function.start(1), function.end(1), "auto"
             if vector is not None and _is_constant_table(cpp, declaration, values, is_const=bool(vector[2])):
                 yield vector.start(1), vector.start(1), "static " if vector[2] else "static const "
+    yield from _held_edits(cpp)
 
 
-def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
+def _held_edits(cpp: Cpp) -> Iterator[tuple[int, int, str]]:
+    """Edits of pointers whose type is not that of what they start with, and of what lambdas return."""
+    of_state = [mention for mention in cpp.mentions if mention.path[0] in STATES]
+    bound = [mention for mention in of_state if mention.access is Access.BIND]
+    code = blanked(strip_comments(cpp.code), cpp.literals)
+    for held in _HELD.finditer(code) if of_state else ():
+        if held[1]:
+            yield *held.span(2), "auto"
+            continue
+        declared = next((each for each in cpp.declarations if each.extent.start >= held.end()), None)
+        if held[3] == "&" or declared is None or not bound:
+            continue
+        if _starts_with_one(cpp, declared) and not code[held.end() : declared.extent.start].strip():
+            continue
+        parts = sorted(bound, key=lambda mention: mention.extent.start < held.start())
+        paths = dict.fromkeys(".".join(part.path).replace(".[]", "[{}]") for part in parts)
+        types = "".join(f", decltype(({path}))" for path in paths if "Objects" not in path)
+        yield *held.span(2), f"aos::Held<{held[2]}{types}>"
+
+
+def _may_bind_state(declaration: Declaration, before: str) -> bool:
     if declaration.kind is DeclarationKind.PARAMETER:
         return re.search(r"\]\s*\([^()]*$", before) is not None
-    initial = declaration.initial
-    return initial is not None and initial.start in _places_of_state(cpp)
+    return declaration.initial is not None
+
+
+def _sees_changes(cpp: Cpp, declaration: Declaration) -> bool:
+    """Returns whether a reference is bound to a part of the state that the same code changes."""
+    path = path_bound(cpp, declaration)[:2]
+    return any(
+        mention.access is not Access.READ for mention in cpp.mentions if path and mention.path[:2] == path
+    )
 
 
 def _is_plain_lambda(cpp: Cpp, declaration: Declaration) -> bool:
@@ -105,6 +143,16 @@ def _is_plain_lambda(cpp: Cpp, declaration: Declaration) -> bool:
     reads = (Access.CALL, Access.READ)
     is_called = all(use.access in reads and use.extent.start > initial.end for use in uses)
     return is_called and cpp.code.startswith("[", initial.start)
+
+
+def _starts_with_one(cpp: Cpp, declaration: Declaration) -> bool:
+    """Returns whether a variable, which is no array, starts with a pointer that leads somewhere."""
+    initial = declaration.initial
+    if initial is None or _NO_ADDRESS.fullmatch(cpp.code, initial.start, initial.end):
+        return False
+    return (
+        cpp.code[initial.end :].lstrip()[:1] != "," and cpp.code[declaration.extent.end :].lstrip()[:1] != "["
+    )
 
 
 def _holds(declaration: Declaration, places: set[int]) -> bool:

@@ -226,6 +226,19 @@ void swap(Left& left, Right& right) {
   right = mine;
 }
 
+// The type that a pointer of document code to `Standard` has: that of the first part of the state that stands
+// for it, else `Standard`.
+template <class Standard, class... Parts>
+struct HeldType { using type = Standard; };
+template <class Standard, class Part, class... Parts>
+struct HeldType<Standard, Part, Parts...> : HeldType<Standard, Parts...> {};
+template <class Standard, class Part, class... Parts>
+  requires(std::convertible_to<Part, Standard> &&
+           std::same_as<typename Standard::value_type, typename std::remove_reference_t<Part>::value_type>)
+struct HeldType<Standard, Part, Parts...> { using type = std::remove_reference_t<Part>; };
+template <class Standard, class... Parts>
+using Held = typename HeldType<Standard, Parts...>::type;
+
 inline void flip(bool& element) { element = !element; }
 void flip(auto&& element) { element.flip(); }
 
