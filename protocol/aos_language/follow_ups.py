@@ -16,7 +16,7 @@ _STRAY = "AOS104"
 _OF_NAMES = frozenset(("AOS110", "AOS116", "AOS123", "AOS201"))
 _NEEDS_DECLARATION = frozenset(("AOS110", "AOS116", "AOS119"))
 _OF_CODE = frozenset(("AOS122", "AOS149"))
-"""What a piece of code says by itself."""
+"""Codes of what a piece of code says by itself."""
 _UNUSED = frozenset(("AOS117", "AOS133"))
 _SHOWN = 6
 

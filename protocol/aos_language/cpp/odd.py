@@ -129,7 +129,8 @@ def _set_again(setting: tree_sitter.Node, statement: tree_sitter.Node) -> Iterat
     reads = re.search(rf"\b{parts[0]}\b|->\s*{parts[-1]}\b", text_of(value))
     if reads is None and all(_LIBRARY.fullmatch(call) for call in calls):
         told = f"`{name}` is set again before anything reads it"
-        yield Odd(setting.children[0], told, f"Take one out; to add to it, write `{name} += ...;`")
+        adds = "To add to it, write `__reward += ...;`" if name == "__reward" else "Take one of both out"
+        yield Odd(setting.children[0], told, adds)
 
 
 def _only_breaks(case: tree_sitter.Node | None) -> bool:

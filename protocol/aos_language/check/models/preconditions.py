@@ -13,7 +13,7 @@ _MEETS = "__meetPrecondition"
 _ALWAYS = re.compile(rf"\s*(?:{_MEETS}\s*=\s*(?:true|1)\s*;?\s*)?")
 """Code that says that a skill may always be used."""
 _TRUE = re.compile(rf"\s*=\s*(?:true|1|{_MEETS}\s*\|\|.*)|\s*\|=.*", re.DOTALL)
-"""What leaves a precondition met that is met already."""
+"""Settings that leave a precondition met that is met already."""
 
 
 def check_precondition(model: SkillModel, findings: Findings) -> None:

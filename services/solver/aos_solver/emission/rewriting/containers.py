@@ -43,16 +43,15 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
 
     - `vector<int>::iterator at = state__.row.begin();` becomes `auto at`, also from `auto& row = state__.row`
     - `vector<bool>::reference bit = state__.bits[1];` becomes `auto&& bit`
-    - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`
-    - `const vector<int>& row = state__.row;` becomes `const auto& row` where the code changes that row
+    - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`, and so does a
+      `const` one of a row that the code changes
     - `vector<int>* row = &state__.row;` becomes `auto* row`
-    - other pointers to containers, `vector<int>* rows[] = {&state__.row}`, become those of `aos::Held`
-    - what a lambda returns, `-> vector<int>&`, becomes `-> auto&`
+    - other pointers, `vector<int>* rows[] = {&state__.row}`, become those of `aos::Held`; a lambda's
+      `-> vector<int>&` becomes `-> auto&`
     - `std::function<void(vector<int>&)> grow = [](...) {...}` becomes `auto grow`
     - `mine.swap(state__.row)` becomes `swap(mine, state__.row)`
     - `state__.bits[1].flip()` becomes `aos::flip(state__.bits[1])`
-    - `std::swap`, `std::erase`, `std::erase_if` and `std::getline` lose their `std::`: those of state
-      variables are not there
+    - `std::swap`, `std::erase`, `std::erase_if`, `std::getline` lose their `std::`: a state's are not there
     - `std::views::keys` becomes `aos::keys`, which also takes a map of the state
     - a vector of constants that is only read becomes `static const`
     - `AOS.SampleDiscrete(vector<double>{0.5, 0.5})` becomes `AOS.SampleDiscrete({0.5, 0.5})`
@@ -84,7 +83,7 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
         elif declaration.type.endswith("&"):
             reference = _CONTAINER_REFERENCE.search(before)
             is_const = declaration.type.startswith("const")
-            binds = _sees_changes(cpp, declaration) if is_const else _may_bind_state(declaration, before)
+            binds = _sees_changes(cpp, declaration) if is_const else _may_bind_state(cpp, declaration, before)
             if reference is not None and binds:
                 yield reference.start(1), reference.end(1), "auto"
         elif declaration.type.endswith("*"):
@@ -121,10 +120,12 @@ def _held_edits(cpp: Cpp) -> Iterator[tuple[int, int, str]]:
         yield *held.span(2), f"aos::Held<{held[2]}{types}>"
 
 
-def _may_bind_state(declaration: Declaration, before: str) -> bool:
+def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
     if declaration.kind is DeclarationKind.PARAMETER:
         return re.search(r"\]\s*\([^()]*$", before) is not None
-    return declaration.initial is not None
+    initial = declaration.initial
+    own = {each.name for each in cpp.declarations if not each.type.endswith(("&", "*", "auto"))}
+    return initial is not None and cpp.code[initial.start : initial.end] not in own
 
 
 def _sees_changes(cpp: Cpp, declaration: Declaration) -> bool:
