@@ -117,13 +117,15 @@ def _set_again(setting: tree_sitter.Node, statement: tree_sitter.Node) -> Iterat
     later = statement.next_named_sibling
     while later is not None and later.type == "comment":
         later = later.next_named_sibling
-    after = later.named_children[0] if later is not None and later.named_children else None
-    if after is None or after.type != "assignment_expression" or later.type != "expression_statement":
+    if later is None or later.type != "expression_statement" or not later.named_children:
+        return
+    after = later.named_children[0]
+    if after.type != "assignment_expression":
         return
     name, signs = field_text(setting, "left"), {operator_of(setting), operator_of(after)}
     if signs != {"="} or name != field_text(after, "left") or not _STEADY.fullmatch(name):
         return
-    value = field_of(after, "right")
+    value = child_of(after, "right")
     calls = [field_text(part, "function") for part in below(value) if part.type == "call_expression"]
     parts = re.findall(r"\w+", name)
     reads = re.search(rf"\b{parts[0]}\b|->\s*{parts[-1]}\b", text_of(value))
