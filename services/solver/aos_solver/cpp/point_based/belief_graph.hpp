@@ -231,7 +231,8 @@ class BeliefGraph {
       const AlphaVector& vector = bound[node.seen_vectors];
       if (!vector.is_gone() && vector.length <= node.left) take(node.seen_vectors);
     }
-    node.lower = std::max(node.lower, best);
+    // What a plan promised that was given up counts no longer: no other belief could build a plan on it.
+    node.lower = best;
   }
 
   [[gnu::optimize("O3")]] void refresh_upper(Node& node) {
