@@ -206,6 +206,35 @@ TEST("A robot goes to things that are worth the way once they are tested") {
   for (const double of_way : {-0.5, -1.0, -2.0, -2.5}) EXPECT(lost_by_options(two_things(0.5, of_way)) < 0.1);
 }
 
+TEST("What is told is what plans of tests return, and what it costs to wait after them") {
+  for (const double odds : {0.5, 0.6, 0.7, 0.8}) {
+    Problem problem = two_things(odds, 0);
+    problem.horizon = 9;
+    const Belief belief = initial_belief(problem);
+    const auto estimates = told_by_options(problem, belief);
+    const double told = std::ranges::max_element(estimates, {}, &aos::ActionEstimate::q)->q;
+    const auto exact = exact_values(belief, problem.horizon);
+    EXPECT(std::abs(told - std::ranges::max_element(exact, {}, &aos::ExactValue::value)->value) < 0.5);
+  }
+}
+
+// A thing is in one of two places, or in neither. To take it there earns 3, elsewhere 30 are lost, and to look costs 5. To leave earns 2.
+TEST("Of an end that is taken is told what it earns") {
+  constexpr std::uint32_t leave = 3, end = 3;
+  Problem problem = units::world(end + 1, leave + 1, 0.95);
+  problem.endings[end] = 1;
+  units::hear(problem, 0.7);
+  problem.starts = {{0, 0.4}, {1, 0.4}, {2, 0.2}};
+  for (std::uint32_t state = 0; state < end; ++state) {
+    units::row(problem, state, look) = {{1.0, state, 1 + state % 2, -5}};
+    for (const std::uint32_t place : {0u, 1u}) units::row(problem, state, 1 + place) = {{1.0, end, 0, place == state ? 3.0 : -30.0}};
+    units::row(problem, state, leave) = {{1.0, end, 0, 2}};
+  }
+  const auto estimates = told_by_options(problem, initial_belief(problem));
+  EXPECT(std::ranges::max_element(estimates, {}, &aos::ActionEstimate::q) - estimates.begin() == leave);
+  EXPECT(std::abs(estimates[leave].q - 2) < 1e-9);
+}
+
 // Three things that may be sound, of which each can be tested and taken, once, until a stall closes. A state has a bit for each that is sound and each that is
 // taken, and the steps that are left.
 Problem three_things(std::uint32_t steps, double of_unsound) {

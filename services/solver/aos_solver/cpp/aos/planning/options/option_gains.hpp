@@ -36,6 +36,7 @@ class OptionGains {
     const LeafCells<Model>& cells = library.cells();
     ways_ = options;
     plans_.clear();
+    is_tested_.assign(options.size(), false);
     lengths_.clear();
     retries_ = library.retries();
     states_ = states.size();
@@ -77,10 +78,12 @@ class OptionGains {
     return std::max(whole - best_of_support(none, lasts_ - steps), 0.0);
   }
 
-  // Lets plans count as options do, in place of those before.
-  void take_plans(List<TestPlan> plans) {
+  // Lets plans count as options do, in place of those before. For the options `weighed` it is known whether a test before them is worth it.
+  void take_plans(List<TestPlan> plans, const List<std::size_t>& weighed) {
     const std::size_t options = size() - plans_.size();
     plans_ = std::move(plans);
+    is_tested_.assign(options, false);
+    for (const std::size_t o : weighed) is_tested_[o] = true;
     ways_.resize(options);
     discounts_.resize(options);
     lengths_.resize(options);
@@ -102,6 +105,7 @@ class OptionGains {
     }
     ends_.resize(size());
     used_.resize(size());
+    is_tested_.resize(size(), true);
     note_touches();
   }
   // Whether a plan goes elsewhere and tests there.
@@ -149,6 +153,24 @@ class OptionGains {
   double best_in(std::size_t state, std::size_t before = none) const {
     support_.assign(1, {state, 1.0});
     return best_of_support(before, lasts_);
+  }
+  // How many steps the best options take.
+  double steps_of_best(const StateWeights& weights) const {
+    best(weights);
+    return std::accumulate(chosen_.begin(), chosen_.end(), 0.0, [this](double steps, std::size_t o) { return steps + lengths_[o]; });
+  }
+  // What is lost by not seeing the state by options that were not weighed against tests before them.
+  double untested_regret(const StateWeights& weights) const {
+    const std::vector<bool> used = used_;
+    double seen = 0;
+    for (std::size_t k = 0; k < states_; ++k) {
+      support_.assign(1, {k, 1.0});
+      seen += weights[k] * best_of_support(none, lasts_, true);
+    }
+    support_of(weights);
+    const double lost = seen - best_of_support(none, lasts_, true);
+    used_ = used;
+    return std::max(lost, 0.0);
   }
   // The option that `best_in` has found best, if it is only one; none else.
   std::size_t only_one() const { return chosen_.size() == 1 ? chosen_.front() : none; }
@@ -199,9 +221,10 @@ class OptionGains {
   }
 
   // What the best options earn in so many steps; an option that may end the mission takes its share from the weights.
-  double best_of_support(std::size_t before, double left) const {
+  double best_of_support(std::size_t before, double left, bool is_untested = false) const {
     candidates_.clear();
     for (std::size_t o = 0; o < size(); ++o) {
+      if (is_untested && is_tested_[o]) continue;
       if (before != none && cannot_follow(o, before)) continue;
       const double earned = earned_by(o);
       if (earned > 0) candidates_.push_back({o, income<Model>(earned, lengths_[o]), earned});
@@ -279,6 +302,7 @@ class OptionGains {
   List<double> lengths_;  // in steps
   std::vector<bool> ends_;  // in some state, and earns nothing where it does not
   std::vector<bool> earns_without_end_;
+  std::vector<bool> is_tested_;  // a plan, or an option that was weighed against tests
   List<std::vector<bool>> changed_;  // [option][variable]
   std::vector<bool> touches_;               // [option * options + option]
   List<std::uint64_t> before_;

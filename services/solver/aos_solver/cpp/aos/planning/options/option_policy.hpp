@@ -81,6 +81,7 @@ class OptionPolicy {
   std::uint64_t search(const Belief<Model>& belief, int horizon, Sampler& random, const BarredActions& barred) {
     const ForgottenTexts forgotten;
     candidates_.clear();
+    waited_ = 0;
     choose_moves(barred);
     regret_.begin();
     const double kept = was_idle_ ? of_detours : 0;
@@ -107,7 +108,7 @@ class OptionPolicy {
     clock_.end_at(of_all);
     was_idle_ = switches::detours && is_idle();
     if (was_idle_) take_detours(likely, horizon, barred, left, random);
-    settle(belief.probability_of(Ending::running));
+    settle(belief.probability_of(Ending::running), horizon);
     taken_ = affordable_ - left - gains_.kept_steps();
     return 1 + static_cast<std::uint64_t>(taken_ / horizon);
   }
@@ -247,6 +248,7 @@ class OptionPolicy {
     const double later = rest + goes_on * gained;
     const double value = gains_.earned(option, belief_.weights()) + gains_.discount(option) * later;
     candidates_.push_back({gains_.way(option).front(), value, gains_.discount(option), gains_.is_plan(option) ? "what can be observed" : "what can be earned"});
+    candidates_.back().goes_on = goes_on;
   }
 
   // Notes the option that is the best candidate so far, if one is.
@@ -302,6 +304,7 @@ class OptionPolicy {
     left -= of_plain * affordable_;
     List<OptionCandidate> found = detours_.find(tried_moves_, waiting, barred, left, random);
     if (found.empty()) return;
+    waited_ = waiting;
     if (waiting < 0) candidates_.clear();
     candidates_.insert(candidates_.begin(), found.begin(), found.end());
     if (waiting == 0) return;
@@ -317,24 +320,42 @@ class OptionPolicy {
     return best != candidates_.end() && best->value <= 0 && best->spared <= matters * std::abs(regret_.value_seen());
   }
 
-  // What is told lies halfway between what the candidate is worth if nothing more is observed, and what the states are worth if
-  // they are seen. Half of that distance is what may be wrong about it.
-  void settle(double running) {
+  // What is told lies halfway between what the candidate is worth if nothing more is observed, and what the states are worth if they are
+  // seen; where plans of tests tell the states apart, it is what these return. The same share is told of what is earned beyond the known
+  // options. Half of what it costs to wait after that counts, since the work may last longer, and the mission may be ended. What may be wrong is
+  // the other half, and half of what is left of the seen states' worth.
+  void settle(double running, int horizon) {
     estimates_.assign(Model::action_count(), {});
     const auto most = std::ranges::max_element(candidates_, {}, &OptionCandidate::value);
     const OptionCandidate* const best = most != candidates_.end() ? &*most : nullptr;
-    const double open = best != nullptr ? std::max(regret_.value_seen() - best->value, 0.0) / 2 : 0;
-    const double beyond = values_.beyond([this](std::size_t k) { return regret_.value_seen(k); });
-    const double error = std::hypot(open, beyond / 2, regret_.error());
+    double later = 0;
+    double error = regret_.error();
+    if (best != nullptr) {
+      const double seen = regret_.value_seen();
+      const double left = std::max(seen - (best->value - waited_), 0.0) / 2;
+      const double open = std::min(left, gains_.untested_regret(belief_.weights()) / 2);
+      const double beyond = values_.beyond([this](std::size_t k) { return regret_.value_seen(k); });
+      const double share = seen > 0 ? std::clamp((best->value - waited_ + open) / seen, 0.0, 1.0) : 0.5;
+      const double times = seen > 0 ? 1 + std::max(beyond, 0.0) / seen : 1;
+      const double waiting = waiting_cost(times, horizon) / 2;
+      later = best->goes_on * (open + share * beyond - waiting) - waited_;
+      error = std::hypot(best->goes_on * std::hypot(left, waiting), best->goes_on * std::max(share, 1 - share) * beyond / 2, error);
+    }
     for (const OptionCandidate& candidate : candidates_) {
       ActionEstimate& estimate = estimates_[candidate.action];
-      const double value = running * (candidate.value + open + beyond);
+      const double value = running * (candidate.value + later);
       if (estimate.n == 0 || value > estimate.q) estimate.q = value;
       estimate.n = belief_.size();
       estimate.standard_error = running * error;
     }
     reason_ = best != nullptr ? best->reason : "nothing";
     least_ = best != nullptr ? running * best->value : 0;
+  }
+
+  // What it costs to wait until the horizon, after `times` as many steps as the best options take.
+  double waiting_cost(double times, int horizon) const {
+    const double steps = std::min(times * gains_.steps_of_best(belief_.weights()), static_cast<double>(horizon));
+    return values_.goes_on() * changes_.idle_cost() * (discounted_steps<Model>(horizon) - discounted_steps<Model>(steps));
   }
 
   bool is_prepared_ = false;
@@ -360,6 +381,7 @@ class OptionPolicy {
   List<int> tried_moves_;
   bool are_for_views_ = false;
   List<OptionCandidate> candidates_;
+  double waited_ = 0;  // what candidates count for waiting after them
   Estimates estimates_;
   const char* reason_ = "";
   double least_ = 0;

@@ -20,6 +20,7 @@ struct OptionCandidate {
   List<int> way{};         // by which it observes
   double spared = 0;              // of the regret, by what is observed
   List<List<StepReports>> reports{};  // of a move that goes on for certain: [step][state]
+  double goes_on = 1;  // the probability that the mission does
 };
 
 template <class Model>

@@ -81,11 +81,16 @@ OptionOutcome taken_option(const Option& option, typename Model::State& state, S
   return outcome;
 }
 
+// What so many steps return that earn 1 each.
+template <class Model>
+double discounted_steps(double steps) {
+  return Model::discount < 1 ? (1 - std::pow(Model::discount, steps)) / (1 - Model::discount) : steps;
+}
+
 // What is earned in so many steps, as an income at each step.
 template <class Model>
 double income(double earned, double steps) {
-  const double shares = Model::discount < 1 ? (1 - std::pow(Model::discount, steps)) / (1 - Model::discount) : steps;
-  return earned / shares;
+  return earned / discounted_steps<Model>(steps);
 }
 
 // A state that a search for ways has come to: the node before it, the action from there, and what was earned since the start.

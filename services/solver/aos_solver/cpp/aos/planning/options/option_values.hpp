@@ -70,6 +70,16 @@ class OptionValues {
     }
     return weights > 0 ? sum / weights : 0;
   }
+  // The share of the valued states in which the mission goes on after what is earned.
+  double goes_on() const {
+    double sum = 0;
+    double weights = 0;
+    for (const auto& [k, weight, followed] : valued_) {
+      sum += followed.discount > 0 ? weight : 0;
+      weights += weight;
+    }
+    return weights > 0 ? sum / weights : 0;
+  }
   // What is earned in the valued states, and the discount of what comes after that.
   Followed mean() const {
     Followed mean{0, 0};

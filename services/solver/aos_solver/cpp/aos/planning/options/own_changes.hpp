@@ -39,13 +39,16 @@ class OwnChanges {
     after_.resize(actions * cells.size());
     ends_.resize(actions);
     List<std::size_t> earning(actions);
+    List<double> rewards(actions);
     for (const State& state : states) {
       cells.write(state, start_.data());
       const Sampler luck{random.bits()};
       for (std::size_t a = 0; a < actions; ++a) {
         State next = state;
         Sampler same = luck;
-        earning[a] += Model::step(next, a, same).reward > 0 ? 1 : 0;
+        const double reward = Model::step(next, a, same).reward;
+        earning[a] += reward > 0 ? 1 : 0;
+        rewards[a] += reward / static_cast<double>(states.size());
         if (are_alike<Model>(state, next)) std::ranges::copy(start_, after_.begin() + a * cells.size());
         else cells.write(next, &after_[a * cells.size()]);
         ends_[a] = Model::ending(next) != Ending::running ? 1 : 0;
@@ -56,7 +59,12 @@ class OwnChanges {
     const auto is_most = [](std::size_t count, std::size_t all) { return static_cast<double>(count) >= most_actions * static_cast<double>(all); };
     earns_anyway_ = is_most(std::accumulate(earning.begin(), earning.end(), std::size_t{0}), actions * states.size());
     earns_idle_ = false;
-    for (std::size_t a = 0; a < actions; ++a) earns_idle_ |= !moves_[a] && is_most(earning[a], states.size());
+    double idle = -std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < actions; ++a) {
+      earns_idle_ |= !moves_[a] && is_most(earning[a], states.size());
+      if (!moves_[a]) idle = std::max(idle, rewards[a]);
+    }
+    idle_cost_ = std::isfinite(idle) ? std::max(-idle, 0.0) : 0;
   }
 
   // Whether the action changes any of the states, or ends the mission.
@@ -67,6 +75,8 @@ class OwnChanges {
   bool earns_anyway() const { return earns_anyway_; }
   // Whether an action that changes nothing earns something in the next step.
   bool earns_idle() const { return earns_idle_; }
+  // What a step costs at least that changes nothing.
+  double idle_cost() const { return idle_cost_; }
   // Whether a variable changes by itself, and no action changes it. Of one that was found after `measure` this is not known.
   bool is_worlds(std::size_t variable) const { return variable < is_worlds_.size() && is_worlds_[variable] && !is_changed_[variable]; }
 
@@ -103,6 +113,7 @@ class OwnChanges {
 
   bool earns_anyway_ = false;
   bool earns_idle_ = false;
+  double idle_cost_ = 0;
   std::vector<bool> moves_;       // by action
   std::vector<bool> is_changed_;  // by variable
   std::vector<bool> is_worlds_;   // by variable

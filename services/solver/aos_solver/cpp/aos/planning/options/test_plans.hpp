@@ -22,12 +22,13 @@ class TestPlans {
       const double some = std::min(steps_of_price, gains_.lasts());
       price_ = of_price * gains_.lost_by(some, belief_.weights()) / some;
       List<TestPlan> plans;
+      weighed_.clear();
       for (const Place& place : places) {
         if (place.prefix.empty()) add_here(plans, place, steps);
         else add_trip(plans, place, steps);
       }
       const bool is_whole = steps > 0 && !tests_.clock().is_over();
-      if (round == 0 || is_whole) gains_.take_plans(std::move(plans));
+      if (round == 0 || is_whole) gains_.take_plans(std::move(plans), weighed_);
     }
   }
 
@@ -179,7 +180,7 @@ class TestPlans {
     }
   }
 
-  void add_here(List<TestPlan>& plans, const Place& here, double& steps) const {
+  void add_here(List<TestPlan>& plans, const Place& here, double& steps) {
     for_each_choice(here, [&](const Options& options) {
       Options choices;
       for (const std::size_t o : options) {
@@ -195,7 +196,7 @@ class TestPlans {
   }
 
   // Goes to a place and makes all choices there, one after the other.
-  void add_trip(List<TestPlan>& plans, const Place& place, double& steps) const {
+  void add_trip(List<TestPlan>& plans, const Place& place, double& steps) {
     TestPlan trip{place.prefix, {}, {place.paid, StateWeights(belief_.size(), 1.0), place.discount, static_cast<double>(place.prefix.size())}};
     bool is_tested = false;
     for_each_choice(place, [&](const Options& options) {
@@ -214,7 +215,7 @@ class TestPlans {
   }
 
   // What is best where a choice is made at a place; without steps where nothing is.
-  StoppingPlan stopped(const Place& place, const Options& options, double rest, double& steps) const {
+  StoppingPlan stopped(const Place& place, const Options& options, double rest, double& steps) {
     if (steps <= 0 || tests_.clock().is_over()) return {};
     List<StoppingChoice> choices;
     for (const std::size_t o : options) {
@@ -225,6 +226,7 @@ class TestPlans {
       }
     }
     const List<const StoppingTest*> tests = telling(place, choices, steps);
+    if (!tests.empty()) weighed_.insert(weighed_.end(), options.begin(), options.end());
     std::size_t responses = 0;
     for (const StoppingTest* test : tests) responses += test->likelihoods.size();
     int most_tests = 1;
@@ -268,6 +270,7 @@ class TestPlans {
   const OptionTests<Model>& tests_;
   ReportedStep<Model> step_;
   double price_ = 0;  // of a step before a deadline
+  Options weighed_;
 };
 
 }
