@@ -17,7 +17,6 @@ class CompactModel {
     double probability;
   };
 
-  // Begins the rows of the next state.
   void begin_state() { first_.push_back(static_cast<std::uint32_t>(words_.size())); }
   // Adds a row to the state that was begun last, or improves the reward of one that is alike. Sorts the outcomes. Throws
   // NotEnumerable where they are too many.

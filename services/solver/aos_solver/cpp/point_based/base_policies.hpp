@@ -169,16 +169,11 @@ class BasePolicies {
 
   // The action that a policy takes.
   std::uint32_t choice(const Prospects& of, const Candidate& candidate) const {
-    std::uint32_t best = 0;
-    double highest = -std::numeric_limits<double>::infinity();
-    for (std::uint32_t action = 0; action < model_.actions; ++action) {
+    return best_of(static_cast<int>(model_.actions), [&](int action) {
       double merit = of.rewards[action] + candidate.policy->share * (of.informed[action] - of.rewards[action]);
       if (candidate.weight > 0) merit += candidate.weight * of.information[action];
-      if (merit <= highest) continue;
-      highest = merit;
-      best = action;
-    }
-    return best;
+      return merit;
+    });
   }
 
   // What is observed after an action, by state of the region.

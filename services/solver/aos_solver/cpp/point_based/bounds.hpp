@@ -78,7 +78,6 @@ class LowerBound {
   void close_gaps() {
     erase_if(vectors_, [](const AlphaVector& vector) { return vector.is_gone(); });
   }
-  // Keeps the initial vectors only.
   void keep_initial() {
     vectors_.erase(vectors_.begin() + initial_, vectors_.end());
     kept_ = initial_;

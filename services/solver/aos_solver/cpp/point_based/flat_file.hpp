@@ -25,47 +25,38 @@ struct Entry {
 };
 static_assert(sizeof(Entry) == 16 && sizeof(Outcome) == 16 && sizeof(Likelihood) == 16);
 
-class FlatFile {
- public:
-  explicit FlatFile(const std::string& path) : file_(path, std::ios::binary) {
-    char mark[8];
-    if (!file_.read(mark, sizeof mark) || std::memcmp(mark, "AOSFLAT1", sizeof mark) != 0) {
-      throw std::runtime_error("not a flat model: " + path);
-    }
+template <class Number>
+List<Number> numbers(std::ifstream& file, std::size_t count) {
+  List<Number> read(count);
+  if (!file.read(reinterpret_cast<char*>(read.data()), static_cast<std::streamsize>(count * sizeof(Number)))) {
+    throw std::runtime_error("the flat model ends too early");
   }
-
-  template <class Number>
-  List<Number> numbers(std::size_t count) {
-    List<Number> read(count);
-    if (!file_.read(reinterpret_cast<char*>(read.data()), static_cast<std::streamsize>(count * sizeof(Number)))) {
-      throw std::runtime_error("the flat model ends too early");
-    }
-    return read;
-  }
-
- private:
-  std::ifstream file_;
-};
+  return read;
+}
 
 }  // namespace detail
 
 // Throws std::runtime_error if the file is not there, no flat model, or too short.
 inline FlatModel read_flat_model(const std::string& path) {
-  detail::FlatFile file{path};
-  const auto counts = file.numbers<std::uint64_t>(8);
+  std::ifstream file{path, std::ios::binary};
+  char mark[8];
+  if (!file.read(mark, sizeof mark) || std::memcmp(mark, "AOSFLAT1", sizeof mark) != 0) {
+    throw std::runtime_error("not a flat model: " + path);
+  }
+  const auto counts = detail::numbers<std::uint64_t>(file, 8);
   FlatModel model;
   model.states = counts[0];
   model.actions = counts[1];
   model.observations = counts[2];
-  model.discount = file.numbers<double>(1)[0];
-  model.rewards = file.numbers<double>(model.states * model.actions);
-  model.outcomes.first = file.numbers<std::uint64_t>(model.states * model.actions + 1);
-  model.outcomes.elements = file.numbers<Outcome>(counts[3]);
-  model.likelihoods.first = file.numbers<std::uint64_t>(counts[4] + 1);
-  model.likelihoods.elements = file.numbers<Likelihood>(counts[5]);
-  const auto weights = file.numbers<double>(counts[6]);
-  const auto first_entry = file.numbers<std::uint64_t>(counts[6] + 1);
-  const auto entries = file.numbers<detail::Entry>(counts[7]);
+  model.discount = detail::numbers<double>(file, 1)[0];
+  model.rewards = detail::numbers<double>(file, model.states * model.actions);
+  model.outcomes.first = detail::numbers<std::uint64_t>(file, model.states * model.actions + 1);
+  model.outcomes.elements = detail::numbers<Outcome>(file, counts[3]);
+  model.likelihoods.first = detail::numbers<std::uint64_t>(file, counts[4] + 1);
+  model.likelihoods.elements = detail::numbers<Likelihood>(file, counts[5]);
+  const auto weights = detail::numbers<double>(file, counts[6]);
+  const auto first_entry = detail::numbers<std::uint64_t>(file, counts[6] + 1);
+  const auto entries = detail::numbers<detail::Entry>(file, counts[7]);
   for (std::size_t start = 0; start < weights.size(); ++start) {
     model.starts.push_back({weights[start], {}});
     for (std::uint64_t i = first_entry[start]; i < first_entry[start + 1]; ++i) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "aos/base/list.hpp"
 
@@ -24,6 +25,19 @@ inline double largest_size(const List<double>& numbers) {
   double largest = 0;
   for (const double number : numbers) largest = std::max(largest, std::abs(number));
   return largest;
+}
+
+// The first of so many numbers with the highest worth.
+int best_of(int count, auto&& worth_of) {
+  int best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (int number = 0; number < count; ++number) {
+    const double worth = worth_of(number);
+    if (worth <= most) continue;
+    most = worth;
+    best = number;
+  }
+  return best;
 }
 
 // The mean of samples, with its standard error, which takes two of them.

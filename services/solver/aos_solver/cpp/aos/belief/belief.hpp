@@ -45,7 +45,6 @@ class Belief {
   const List<Particle>& particles() const { return cloud_.particles; }
   // Whether it is the exact belief, but for differences that nobody would notice.
   bool is_exact() const { return error_bound_ <= negligible_error; }
-  // Whether the states were drawn at random.
   bool is_drawn() const { return source_ == Source::drawing; }
   // Whether more than half of the states were drawn only once, so that there are others. A belief without lineages does not
   // know; then it is enough that there are so many states.
@@ -237,7 +236,6 @@ class Belief {
     return Belief{gathering, sum, error_bound, is_drawn ? Source::drawing : Source::enumeration};
   }
 
-  // The same belief without its lineages and its history.
   Belief without_history() const {
     Belief alone = *this;
     alone.cloud_.lineages.clear();

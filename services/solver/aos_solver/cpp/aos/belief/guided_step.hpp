@@ -58,7 +58,6 @@ class GuidedStep {
     keeps_ends_ = numbers == nullptr || !numbers->weighs();
   }
 
-  // Leaves the first draws of each step to chance.
   void leave_to_chance(std::size_t draws) { by_chance_ = draws; }
 
   // Whether the last call left nothing to chance, apart from what has no promise.

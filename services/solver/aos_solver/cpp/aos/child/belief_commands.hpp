@@ -201,7 +201,6 @@ class BeliefCommands {
     else become(json, believed_, [] {});
     json.end_object();
   }
-  // Puts what is believed aside, and takes it back.
   void put_aside(JsonWriter& json) {
     aside_ = believed_;
     json.begin_object().end_object();

@@ -48,7 +48,6 @@ class WorldCommands {
     json.end_object();
   }
 
-  // Writes the hidden state as text for people.
   void show(JsonWriter& json) const { json.begin_object().member("state", Model::state_text(hidden_)).end_object(); }
 
   void reset_many(JsonWriter& json, const Command& command) {

@@ -121,7 +121,6 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   using End = FunctionRef<void()>;
 
   double walk(Run run, Run visit, int max_paths, std::size_t max_depth_first);
-  // Walks the paths that were cut before.
   double walk_without_cuts(Run run, Run visit, int max_paths, std::size_t max_depth_first);
   // Lists what follows each head. Returns the probability of what is not listed.
   double list_heads(Run run, std::size_t max_depth_first);

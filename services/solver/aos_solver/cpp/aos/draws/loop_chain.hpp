@@ -14,7 +14,6 @@
 
 namespace aos {
 
-// Thrown where there are too many heads.
 struct TooManyHeads {};
 
 class LoopChain {

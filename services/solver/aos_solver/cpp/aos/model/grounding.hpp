@@ -77,13 +77,11 @@ constexpr SkillFacts facts_of(void (*read_locals)(std::string_view values)) {
   };
 }
 
-// The value of a parameter as text.
 struct Argument {
   std::string_view parameter;
   std::string_view value;
 };
 
-// Adds the groundings of one skill to the actions of the model.
 class Groundings {
  public:
   Groundings(GroundedActions& all, int skill, const char* name) : all_(all), skill_(skill), name_(name) {}

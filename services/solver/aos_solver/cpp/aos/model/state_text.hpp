@@ -58,7 +58,6 @@ class StateReader {
       malformed();
     }
   }
-  // Reads a leaf of this kind and size in bytes.
   void read_leaf(Leaf::Kind kind, std::size_t size, void* place);
   std::string next_characters();
   std::int64_t next();
@@ -82,7 +81,6 @@ constexpr Member constant_member(const char* name, const T& constant) {
   return member;
 }
 
-// Values as texts, by name.
 class NamedTexts {
  public:
   void add(std::string_view name, std::string_view text) { texts_.emplace_back(name, text); }

@@ -44,7 +44,6 @@ class SensingTables {
   std::uint64_t version() const { return version_; }
   double unknown_share() const { return tables_.unknown_share(); }
 
-  // Makes the tables of a row's outcomes.
   void fill(std::size_t row) {
     const auto& rows = space_.rows().outcomes;
     for (std::size_t outcome = rows.first[row]; outcome < rows.first[row + 1]; ++outcome) table(row, outcome);

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "aos/base/progress.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/enumerator.hpp"
@@ -108,15 +109,7 @@ class InformationPrice {
   }
 
   int choice(const Cloud& cloud, double price) {
-    int best = 0;
-    double most = 0;
-    for (int action = 0; action < Model::action_count(); ++action) {
-      const double merit = merit_of(cloud, action, price);
-      if (action > 0 && merit <= most) continue;
-      most = merit;
-      best = action;
-    }
-    return best;
+    return best_of(Model::action_count(), [&](int action) { return merit_of(cloud, action, price); });
   }
 
   double merit_of(const Cloud& cloud, int action, double price) {

@@ -10,6 +10,7 @@
 #include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/stable_order.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/earned.hpp"
 #include "aos/planning/values/cell_tables.hpp"
@@ -155,18 +156,12 @@ class RestValues {
   // The best action by the values, under the same luck for all.
   int best_action(const State& state, Sampler& random) const {
     const Sampler luck{random.bits()};
-    int best = action_;
-    double most = -std::numeric_limits<double>::infinity();
-    for (int action = 0; action < Model::action_count(); ++action) {
+    return best_of(Model::action_count(), [&](int action) {
       State next = state;
       Sampler same = luck;
       const double reward = Model::step(next, action, same).reward;
-      const double worth = reward + Model::discount * value(next);
-      if (worth <= most) continue;
-      most = worth;
-      best = action;
-    }
-    return best;
+      return reward + Model::discount * value(next);
+    });
   }
 
   static std::size_t affordable_examples(double steps_of_example) {

@@ -37,7 +37,6 @@ class SavingIndex final : public StateValues<Model> {
     for (const Option& way : search.from(state, steps, random)) add_with_rests(ways_, way, way.size(), most_ways);
   }
 
-  // Values the ways from all states, by their weights.
   void measure(const List<State>& states, const StateWeights& weights, double& steps, Sampler& random) {
     incomes_.assign(ways_.size(), 0);
     for (std::size_t k = 0; k < states.size(); ++k) {

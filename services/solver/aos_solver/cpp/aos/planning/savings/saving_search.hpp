@@ -47,7 +47,6 @@ double returned_along(const RestValues<Model>& values, const Option& way, typena
   return sum + discount * values.value(state);
 }
 
-// What a way saves against the rest.
 template <class Model>
 double saved(const RestValues<Model>& values, const Rest<Model>& rest, const Option& way, const typename Model::State& state, const StepLuck& luck) {
   return returned_along(values, way, state, luck) - rest.returned(way.size() + values.settling());
@@ -147,7 +146,6 @@ class SavingSearch {
     return ways;
   }
 
-  // Marks what each action changes of its own accord.
   void find_own_changes(std::size_t actions) {
     is_own_.assign(actions * cells_.size(), false);
     for (std::size_t i = 0; i < cells_.size(); ++i) {

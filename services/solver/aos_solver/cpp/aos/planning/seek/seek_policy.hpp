@@ -191,7 +191,6 @@ class SeekPolicy {
 
   const State& any_state() const { return belief_.states()[belief_.size() / 2]; }
 
-  // The first action of the policy.
   int first_action(Sampler& random) {
     const Test* const test = best_test(0, prior_, any_state(), random);
     if (test == nullptr) return ended(0, any_state(), random).action;

@@ -130,16 +130,9 @@ class LearnedValues final : public StateValues<Model> {
   }
   static int best_by(auto&& worth_of, Sampler& random) {
     const bool compares_all = Model::action_count() <= max_compared_actions;
-    int best = 0;
-    double most = -std::numeric_limits<double>::infinity();
-    for (int i = 0; i < compared(); ++i) {
-      const int action = compares_all ? i : random.below(Model::action_count());
-      const double worth = worth_of(action);
-      if (worth <= most) continue;
-      most = worth;
-      best = action;
-    }
-    return best;
+    int actions[max_compared_actions]{};
+    const auto worth = [&](int i) { return worth_of(actions[i] = compares_all ? i : random.below(Model::action_count())); };
+    return actions[best_of(compared(), worth)];
   }
   static int compared() { return std::min(Model::action_count(), max_compared_actions); }
 
