@@ -105,3 +105,21 @@ def test_a_vector_of_data_with_a_length_at_the_start_has_room_for_twice_as_many(
 
 def test_a_vector_that_nothing_fills_still_has_room():
     assert capacities_of("x = 1;").capacity("grid") == GROWING_CAPACITY
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "vector<vector<int>*> rows{&state__.row, &state__.far}; for (auto row : rows) row->push_back(1);",
+        "vector<int>* rows[2]; rows[0] = &state__.row; rows[1] = &state__.far; rows[i]->push_back(1);",
+    ],
+)
+def test_vectors_grow_through_pointers_that_are_kept(code):
+    capacities = capacities_of("state.row = {1, 2}; state.far = {3};", code)
+    assert [capacities.capacity(name) for name in ("row", "far")] == [GROWING_CAPACITY] * 2
+
+
+def test_vectors_that_one_pointer_leads_to_are_of_one_type():
+    code = "vector<int>* to = &state__.row; if (i > 0) to = &state__.far; to->at(0) = 1;"
+    capacities = capacities_of("state.row = {1, 2}; state.far = {3};", code)
+    assert [capacities.capacity(name) for name in ("row", "far")] == [2, 2]

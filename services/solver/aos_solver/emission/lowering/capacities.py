@@ -27,6 +27,7 @@ _LOOP_BOUND = re.compile(rf"\bfor\s*\([^;{{}}]*;[^;{{}}]*<=?{_NUMBER};")
 _CONSTRUCTED = re.compile(rf"(?:std::)?vector\s*<[^(){{}};]*>\s*\({_NUMBER}[,)]")
 _COPIED = re.compile(r"state_*\.(?:\w+\.)*(\w+)\s*;")
 _SIZED = re.compile(rf"\.\s*\w+\s*\({_NUMBER}[,)]")
+_POINTER = re.compile(r"\bvector\s*<[\w\s:<>*]*>\s*\*")
 _LOOP_COLON = re.compile(r"\s*:\s*")
 _IN_PLACE = re.compile(r"\s*([:,]|\.\s*swap\s*\()\s*(&?)\s*")
 _BEFORE_FIRST = re.compile(r"(?:(swap\s*\(\s*)|(&\s*))\Z")
@@ -188,7 +189,9 @@ def _fills_what_is_unclear(cpp: Cpp, code: str, known: frozenset[str]) -> bool:
         name, *rest = mention.path
         kind = types.get(name, "")
         is_iterator = kind == "auto" and rest[:1] in (["first"], ["second"])
-        if name in known or not (kind.endswith(("&", "*")) or is_iterator):
+        is_pointer = name not in STATES and code.startswith("->", mention.extent.end)
+        is_unclear = kind.endswith(("&", "*")) or is_iterator
+        if not is_pointer and (name in known or not is_unclear):
             continue
         is_set = mention.access is Access.WRITE and _LONGER.match(code[mention.extent.end :].lstrip())
         if mention.method in _GROWING | _SIZING or is_set:
@@ -198,7 +201,9 @@ def _fills_what_is_unclear(cpp: Cpp, code: str, known: frozenset[str]) -> bool:
 
 def _in_place_of_each_other(cpp: Cpp, code: str) -> Iterator[tuple[Mention, Mention]]:
     """Pairs as in `c ? state.a : state.b`, `{&state.a, &state.b}`, `swap(state.a, state.b)`, and
-    `state.a.swap(state.b)`."""
+    `state.a.swap(state.b)`; and what pointers to vectors are set to."""
+    if _POINTER.search(code):
+        yield from pairwise(m for m in cpp.mentions if m.path[0] in STATES and m.access is Access.BIND)
     for one, other in pairwise(cpp.mentions):
         between = _IN_PLACE.fullmatch(code, one.extent.end, other.extent.start)
         if between is None:
