@@ -233,3 +233,42 @@ for (int i = 0; i < 9; i++) state.worn[i] = AOS.Bernoulli(0.45);
         run = await simulated(engine, 1000, seed=2, goal_probability=1, step_limit=40)
     assert sum(action.startswith("go") for action in run.actions) <= 6
     assert sum(action.startswith("sell") for action in run.actions) >= 4
+
+
+async def test_what_the_many_actions_of_one_skill_do_alike_is_their_doing():
+    """A wrong insertion wears the plug, and so does time. Looks tell of nothing but the socket."""
+    plug = BundleWriter(
+        "plug",
+        """horizon: 40
+discount: 0.97
+state_variable: int socket
+state_variable: double wear
+state_variable: bool is_in
+initial_belief:
+state.socket = AOS.SampleDiscrete(std::vector<double>(60, 1.0));
+extrinsic_code:
+state_.wear = state.wear + AOS.SampleUniform(0, 0.05);
+reward_code:
+if (state.is_in) {
+    __reward = 40;
+    __isGoalState = true;
+} else if (state.wear > 6) {
+    __reward = -30;
+    __isFailureState = true;
+}
+""",
+    )
+    insert = """__reward = -1;
+state__.is_in = at == state.socket && AOS.Bernoulli(0.9);
+if (!state__.is_in) state__.wear = state_.wear + AOS.SampleUniform(0.5, 1.5);
+__moduleResponse = state__.is_in ? in : stuck;"""
+    plug.skill("insert", insert, over={"at": "60"})
+    look = "__reward = -0.5;\n__moduleResponse = AOS.Bernoulli({} ? 0.9 : 0.1) ? likely : unlikely;"
+    plug.skill("look_at_row", look.format("state.socket / 8 == row"), over={"row": "8"})
+    plug.skill("look_at_column", look.format("state.socket % 8 == column"), over={"column": "8"})
+    async with engine_of_text(plug.files) as engine:
+        plan = await engine.plan(simulations=1000, seed=1, planner="auto")
+        assert plan.planner == "options"
+        assert plan.actions[plan.index].action.startswith("look")
+        run = await simulated(engine, 1000, seed=2, goal_probability=1, step_limit=40)
+    assert run.discounted_return > 10

@@ -155,11 +155,40 @@ TEST("A reward that an action has earned does not count again where the mission 
   aos::OwnChanges<TableModel> changes;
   changes.measure(sampled.states(), library.cells(), steps, random);
   aos::OptionGains<TableModel> gains;
-  gains.measure(library, sampled.states(), changes, steps, random);
+  gains.measure(library, sampled, static_cast<double>(sampled.size()), changes, steps, random);
   for (std::size_t k = 0; k < sampled.size(); ++k) {
     const bool is_one_done = sampled.states()[k].variables[0] + sampled.states()[k].variables[1] == 1;
     EXPECT(gains.best_in(k) >= 20);
     EXPECT(gains.best_in(k) <= (is_one_done ? 20 : 20 + 0.95 * 20) + 1e-9);
+  }
+}
+
+// One of 50 things is wanted, the first one by 0.6, and all have worn as far as chance has it.
+TEST("How far a state that stands for others has worn moves no weight") {
+  constexpr std::uint32_t things = 50, wears = 4;
+  Problem problem = units::world(things * wears, 2, 0.95);
+  problem.starts.clear();
+  for (std::uint32_t state = 0; state < things * wears; ++state) {
+    const std::uint32_t thing = state / wears, wear = state % wears;
+    problem.values[2 * state] = static_cast<int>(thing);
+    problem.values[2 * state + 1] = static_cast<int>(wear);
+    problem.starts.push_back({state, (thing == 0 ? 0.6 : 0.4 / (things - 1)) / wears});
+    for (const std::uint32_t action : {0u, 1u}) {
+      if (wear + 1 < wears) units::row(problem, state, action) = {{1.0, state + 1, 0, 0}};
+    }
+  }
+  const Belief belief = initial_belief(problem);
+  aos::Sampler random{1};
+  const aos::DecisionClock clock;
+  aos::OptionLibrary<TableModel> library{clock};
+  library.prepare(belief, random);
+  aos::SampledBelief<TableModel> sampled;
+  using State = TableModel::State;
+  sampled.draw_alike(belief, 64, [](const State& state) { return static_cast<std::uint64_t>(state.variables[0]); }, random);
+  sampled.rake(belief, library.searched_cells(), [](State& state) { state.variables[1] = 0; }, random);
+  EXPECT_EQUAL(sampled.size(), things);
+  for (std::size_t k = 0; k < sampled.size(); ++k) {
+    if (sampled.states()[k].variables[0] == 0) EXPECT_NEAR(sampled.weights()[k], 0.6, 0.01);
   }
 }
 

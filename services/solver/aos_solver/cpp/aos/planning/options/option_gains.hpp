@@ -29,9 +29,11 @@ class OptionGains {
   using State = typename Model::State;
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-  // Takes each option from each state. What changes by itself touches nothing. Options for which there is no time earn nothing.
-  // Of the steps a share is kept for trying later which options can follow another.
-  void measure(const auto& library, const List<State>& states, const OwnChanges<Model>& changes, double& steps, Sampler& random) {
+  // Takes each option from each state: twice where there are `even` states of the same weight, and the oftener the more a state
+  // weighs. What changes by itself touches nothing. Options for which there is no time earn nothing. Of the steps a share is kept for
+  // trying later which options can follow another.
+  void measure(const auto& library, const SampledBelief<Model>& belief, double even, const OwnChanges<Model>& changes, double& steps, Sampler& random) {
+    const List<State>& states = belief.states();
     const List<Option>& options = library.options();
     const LeafCells<Model>& cells = library.cells();
     ways_ = options;
@@ -50,12 +52,15 @@ class OptionGains {
     discounts_.clear();
     before_.resize(cells.size());
     after_.resize(cells.size());
+    List<int> tries;  // by state
+    for (const double weight : belief.weights()) tries.push_back(std::max<int>(least_tries, std::lround(least_tries * even * weight)));
+    const int all_tries = std::accumulate(tries.begin(), tries.end(), 0);
     for (std::size_t o = 0; o < options.size(); ++o) {
       discounts_.push_back(std::pow(Model::discount, options[o].size()));
       lengths_.push_back(static_cast<double>(options[o].size()));
       if (library.clock().is_over()) continue;
-      for (std::size_t k = 0; k < states_; ++k) take(o, k, states[k], cells, random);
-      steps -= tries * static_cast<double>(options[o].size() * states_);
+      for (std::size_t k = 0; k < states_; ++k) take(o, k, states[k], tries[k], cells, random);
+      steps -= all_tries * static_cast<double>(options[o].size());
     }
     for (std::size_t o = 0; o < options.size(); ++o) ends_[o] = ends_[o] && !earns_without_end_[o];
     for (auto& changed : changed_) {
@@ -172,8 +177,12 @@ class OptionGains {
     used_ = used;
     return std::max(lost, 0.0);
   }
-  // The option that `best_in` has found best, if it is only one; none else.
-  std::size_t only_one() const { return chosen_.size() == 1 ? chosen_.front() : none; }
+  // The option that `best_in` has found best, if it is only one, or the mission is to end by it: then others follow only where it
+  // fails. Else none.
+  std::size_t only_one() const {
+    if (chosen_.empty()) return none;
+    return chosen_.size() == 1 || ends_[chosen_.front()] ? chosen_.front() : none;
+  }
   // The weights of the states after an option, as far as the mission goes on.
   StateWeights after(std::size_t option, StateWeights weights) const {
     for (std::size_t k = 0; k < states_; ++k) weights[k] *= goes_on_[option * states_ + k];
@@ -181,7 +190,7 @@ class OptionGains {
   }
 
  private:
-  static constexpr int tries = 2;     // of each option from each state
+  static constexpr int least_tries = 2;  // of each option from each state
   static constexpr double share_of_sequels = 0.2;  // of the steps that are left
   static constexpr int max_ends = 4;  // options one after the other that may end the mission
   static constexpr double negligible = 1e-6;
@@ -196,7 +205,7 @@ class OptionGains {
     double earned;
   };
 
-  void take(std::size_t option, std::size_t k, const State& start, const LeafCells<Model>& cells, Sampler& random) {
+  void take(std::size_t option, std::size_t k, const State& start, int tries, const LeafCells<Model>& cells, Sampler& random) {
     cells.write(start, before_.data());
     for (int i = 0; i < tries; ++i) {
       State state = start;

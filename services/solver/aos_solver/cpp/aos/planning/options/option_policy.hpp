@@ -53,7 +53,8 @@ class OptionPolicy {
     const auto all_else = [&](const State& state) { return library_.running_down().all_else_of(state); };
     if (switches::alike_states) belief_.draw_alike(belief, static_cast<std::size_t>(states), all_else, random);
     else belief_.draw(belief, static_cast<std::size_t>(states), random);
-    if (switches::raked_states) belief_.rake(belief, library_.searched_cells(), random);
+    const auto set_back = [&](State& state) { if (switches::alike_states) library_.running_down().set_back(state); };
+    if (switches::raked_states) belief_.rake(belief, library_.searched_cells(), set_back, random);
     library_.drop_unused(gains_, taken_way_);
     double left = of_options * affordable_;
     changes_.measure(belief_.states(), library_.cells(), left, random);
@@ -61,7 +62,7 @@ class OptionPolicy {
     double found = library_.extend(belief_, left, random);
     if (found < enough_found && library_.count()) found = library_.extend(belief_, left, random);
     clock_.end_at(of_gains);
-    gains_.measure(library_, belief_.states(), changes_, left, random);
+    gains_.measure(library_, belief_, states, changes_, left, random);
     if (switches::deadlines) gains_.end_after(steps_to_deadline(belief_, library_.running_down(), random));
     taken_ = of_options * affordable_ - left;
     std::string obstacle = found < (switches::enough_ways ? enough_found : 1e-9) ? "no way to a reward is found from most states" : "";

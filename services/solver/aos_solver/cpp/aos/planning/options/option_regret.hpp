@@ -60,6 +60,8 @@ class OptionRegret {
   void weigh_again() { regret_ = after(belief_.weights()); }
   // By state: the option that is best there, where no other one follows it.
   const List<std::size_t>& only_ways() const { return only_ways_; }
+  // Whether the mission ends by the option that is best in a state, if it is the only one.
+  bool ends(std::size_t state) const { return only_ways_[state] < gains_.size() && gains_.ends(only_ways_[state]); }
   // The options that may be taken next.
   void watch(List<std::size_t> likely) { likely_ = std::move(likely); }
   double value_seen(std::size_t state) const { return seen_[state]; }
@@ -108,8 +110,8 @@ class OptionRegret {
 
  private:
   StateWeights by_way(const StateWeights& weights) const {
-    StateWeights sums(gains_.size());
-    for (std::size_t k = 0; k < weights.size(); ++k) sums[only_ways_[k]] += weights[k];
+    StateWeights sums(gains_.size() + 1);  // the last one is that of states where nothing can be earned
+    for (std::size_t k = 0; k < weights.size(); ++k) sums[std::min(only_ways_[k], gains_.size())] += weights[k];
     return sums;
   }
   // How many steps of the model take as long as to find the best options.

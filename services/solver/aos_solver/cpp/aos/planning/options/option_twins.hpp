@@ -1,6 +1,7 @@
 // Which tests tell of nothing but the best option. Among few states each detail of a state tells it from all others, and so seems to
 // tell which option is best there. So each state gets a twin: another state of the belief, with details of its own, in which the
-// same option is best. A test that tells of options only reports the same from both.
+// same option is best. A test that tells of options only reports the same from both. A state without one is its own twin if the mission
+// ends by the best option, and the belief has others that differ from it only in what runs down, if at all: it has no details.
 #pragma once
 
 #include "aos/planning/options/option_gains.hpp"
@@ -24,28 +25,27 @@ class OptionTwins {
   // Whether at least half of the last belief has twins.
   bool are_known() const { return !twins_.empty(); }
 
-  // Looks for twins where in each state one option is best, and none follows it. It takes at most so many steps of the model.
+  // Looks for twins where in each state one option is best, and none follows it. Where the mission ends by it, there may be states in
+  // which nothing is earned. It takes at most so many steps of the model.
   void find(const Belief<Model>& belief, double most_steps, double& steps, Sampler& random) {
     forget();
-    if (std::ranges::count(regret_.only_ways(), OptionGains<Model>::none) > 0) return;
+    if (has_many_ways()) return;
     List<State> others;
     draw_evenly<Model>(belief.particles(), most_others, random, [&](const State& state) {
       if (Model::ending(state) == Ending::running) others.push_back(state);
     });
     if (others.empty()) return;
-    double left = most_steps;
     double found = 0;
     for (std::size_t k = 0; k < sampled_.size(); ++k) {
-      const std::size_t first = random.below(static_cast<int>(others.size()));
-      for (std::size_t i = 0; i < others.size() && left > 0 && !library_.clock().is_over(); ++i) {
-        const State& other = others[(first + i) % others.size()];
-        if (!is_twin(other, k, left, random)) continue;
-        twins_.push_back({k, other});
-        found += sampled_.weights()[k];
-        break;
-      }
+      if (regret_.only_ways()[k] == OptionGains<Model>::none) continue;
+      const double share = most_steps / sampled_.size();
+      double left = share;
+      const State* const twin = twin_of(k, others, left, random);
+      steps -= share - left;
+      if (twin == nullptr) continue;
+      twins_.push_back({k, *twin});
+      found += sampled_.weights()[k];
     }
-    steps -= most_steps - left;
     if (found < enough) forget();
   }
 
@@ -68,12 +68,36 @@ class OptionTwins {
     State state;
   };
 
-  bool is_twin(const State& other, std::size_t k, double& left, Sampler& random) const {
+  // Whether in some state several options are best together, or none is while those of the others leave something to do.
+  bool has_many_ways() const {
+    bool is_end = true;
+    bool has_none = false;
+    for (std::size_t k = 0; k < sampled_.size(); ++k) {
+      const bool is_none = regret_.only_ways()[k] == OptionGains<Model>::none;
+      if (is_none && regret_.value_seen(k) > 0) return true;
+      has_none = has_none || is_none;
+      is_end = is_end && (is_none || regret_.ends(k));
+    }
+    return has_none && !is_end;
+  }
+
+  const State* twin_of(std::size_t k, const List<State>& others, double& left, Sampler& random) const {
+    const State& own = sampled_.states()[k];
+    const std::size_t first = random.below(static_cast<int>(others.size()));
+    bool has_alike = false;
+    for (std::size_t i = 0; i < others.size() && left > 0 && !library_.clock().is_over(); ++i) {
+      const State& other = others[(first + i) % others.size()];
+      if (!library_.running_down().differ(other, own)) has_alike = true;
+      else if (earns_as_much(other, k, left, random)) return &other;
+    }
+    return has_alike && regret_.ends(k) ? &own : nullptr;
+  }
+
+  bool earns_as_much(const State& other, std::size_t k, double& left, Sampler& random) const {
     const Option& option = library_.options()[regret_.only_ways()[k]];
     State state = other;
     left -= static_cast<double>(option.size());
-    const double earned = taken_option<Model>(option, state, random, library_.retries()).earned;
-    return earned > regret_.value_seen(k) / 2 && library_.running_down().differ(other, sampled_.states()[k]);
+    return taken_option<Model>(option, state, random, library_.retries()).earned > regret_.value_seen(k) / 2;
   }
 
   const SampledBelief<Model>& sampled_;

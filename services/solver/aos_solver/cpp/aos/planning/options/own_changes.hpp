@@ -1,7 +1,8 @@
 // What actions change, apart from what the world changes by itself in the same step: doors that open, batteries that drain.
 //
 // All actions are taken from a state with the same random numbers. What most of them do alike is the world's doing: a model
-// need not say what changes by itself. An action changes a variable where its result is another one.
+// need not say what changes by itself. What actions of few skills do alike is theirs, however many actions they have. An action
+// changes a variable where its result is another one.
 #pragma once
 
 #include "aos/planning/values/leaf_cells.hpp"
@@ -93,7 +94,7 @@ class OwnChanges {
     }
     for (std::size_t i = 0; i < variables; ++i) {
       const auto value = [&](std::size_t a) { return after_[a * variables + i]; };
-      const std::uint64_t by_itself = value_in_common([&](std::size_t n) { return value(alike[n]); }, alike.size(), start_[i]);
+      const std::uint64_t by_itself = value_of_most_skills(alike, value, start_[i]);
       if (by_itself != start_[i]) is_worlds_[i] = true;
       for (std::size_t a = 0; a < actions; ++a) {
         if (value(a) == by_itself) continue;
@@ -101,6 +102,28 @@ class OwnChanges {
         is_changed_[i] = true;
       }
     }
+  }
+
+  // The value that most of the actions lead to, or else most of the others, if it is one of most skills; without one the value before.
+  std::uint64_t value_of_most_skills(std::vector<std::size_t> actions, auto&& value, std::uint64_t before) const {
+    const std::vector<std::size_t> all = actions;
+    while (!actions.empty()) {
+      const std::uint64_t common = value_in_common([&](std::size_t n) { return value(actions[n]); }, actions.size(), before);
+      const auto leads_there = [&](std::size_t a) { return value(a) == common; };
+      if (common == before || is_of_most_skills(all, leads_there)) return common;
+      std::erase_if(actions, leads_there);
+    }
+    return before;
+  }
+
+  // Whether half of the skills of these actions, or more, have one that does so.
+  bool is_of_most_skills(const std::vector<std::size_t>& actions, auto&& does) const {
+    std::vector<bool> all(Model::skill_count), doing(Model::skill_count);
+    for (const std::size_t a : actions) {
+      all[Model::skill_of(a)] = true;
+      if (does(a)) doing[Model::skill_of(a)] = true;
+    }
+    return 2 * std::ranges::count(doing, true) >= std::ranges::count(all, true);
   }
 
   // Whether an action leaves the state as it was, so that the world does not end the mission.

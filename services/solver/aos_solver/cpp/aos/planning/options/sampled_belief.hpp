@@ -1,6 +1,9 @@
 // A few states of a belief that stand for it, with weights, and what observations make of the weights.
 #pragma once
 
+#include <map>
+#include <unordered_map>
+
 #include "aos/base/function_ref.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
@@ -111,17 +114,26 @@ class SampledBelief {
 
   // Weighs the states so that each variable of few values is distributed as in the whole belief (raking: Deming and Stephan, 1940), as long
   // as the weights stay even enough. What is drawn of a dozen things errs in each, and of many options the draw flatters the best one.
-  void rake(const Belief<Model>& belief, const auto& cells, Sampler& random) {
+  // What runs down, which `set_back(state)` undoes, does not count: one state stands for all that differ only in that.
+  void rake(const Belief<Model>& belief, const auto& cells, FunctionRef<void(State&)> set_back, Sampler& random) {
     const std::size_t variables = cells.size();
     List<std::uint64_t> row(variables);
     List<std::map<std::uint64_t, double>> shares(variables);  // of the belief, by the values that the states have
     List<std::uint64_t> rows;
+    List<std::uint64_t> before(variables);
+    std::vector<bool> runs_down(variables);
     for (const State& state : states_) {
       cells.write(state, row.data());
       rows.insert(rows.end(), row.begin(), row.end());
-      for (std::size_t v = 0; v < variables; ++v) shares[v].emplace(row[v], 0.0);
+      State earlier = state;
+      set_back(earlier);
+      cells.write(earlier, before.data());
+      for (std::size_t v = 0; v < variables; ++v) {
+        shares[v].emplace(row[v], 0.0);
+        if (row[v] != before[v]) runs_down[v] = true;
+      }
     }
-    const auto is_raked = [&](std::size_t v) { return shares[v].size() > 1 && shares[v].size() <= most_values; };
+    const auto is_raked = [&](std::size_t v) { return !runs_down[v] && shares[v].size() > 1 && shares[v].size() <= most_values; };
     const int drawn = static_cast<int>(raked_cells / (variables + 1));
     draw_evenly<Model>(belief.particles(), drawn, random, [&](const State& state) {
       if (Model::ending(state) != Ending::running) return;

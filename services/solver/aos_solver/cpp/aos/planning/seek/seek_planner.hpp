@@ -43,7 +43,8 @@ class SeekPlanner final : public Planner<Model> {
     seeks_ = sought_.returned > estimates_[chosen].q;
     if (seeks_) settle(why);
     else why += "; to seek returns less";
-    return simulations;
+    // Seeking may have left no time for simulations, and yet it has tried an action.
+    return std::max<std::uint64_t>(simulations, 1);
   }
 
   // Whether missions that seek return more than `least`, what the choice of another planner returns if nothing more is observed.
