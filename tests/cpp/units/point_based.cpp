@@ -66,48 +66,78 @@ TEST("Bounds come nearer with every trial, and never cross") {
   }
 }
 
-TEST("Bounds close at each belief of a mission, also after plans that earlier ones needed were given up") {
-  // A machine wears down by chance. To run it tells little of the wear, and to look tells all.
-  constexpr std::uint32_t wears = 4, run = 0, replace = 1, look = 2;
-  constexpr double slips = 0.3;
-  Problem problem = units::world(wears, 3, 0.95);
+// A machine that wears down by chance. To run it tells little of the wear, and to look tells all.
+constexpr std::uint32_t wears = 4, run = 0, replace = 1, look = 2;
+constexpr double wears_down = 0.3;
+double chance_of_bad(std::uint32_t wear) { return 0.5 + 0.1 * wear; }
+point_based::FlatModel machine(std::size_t horizon) {
+  Problem problem = world(wears, 3, 0.95);
   problem.sensings.clear();
-  const auto chance_of_bad = [](std::uint32_t wear) { return 0.5 + 0.1 * wear; };
-  for (std::uint32_t wear = 0; wear < wears; ++wear) problem.sensings.push_back({{0, 1 - chance_of_bad(wear)}, {1, chance_of_bad(wear)}});
-  for (std::uint32_t wear = 0; wear < wears; ++wear) problem.sensings.push_back({{2 + static_cast<int>(wear), 1.0}});
+  problem.starts.clear();
   for (std::uint32_t wear = 0; wear < wears; ++wear) {
+    problem.starts.push_back({wear, 1.0 / wears});  // so that states are numbered as here
+    problem.sensings.push_back({{0, 1 - chance_of_bad(wear)}, {1, chance_of_bad(wear)}});
+  }
+  for (std::uint32_t wear = 0; wear < wears; ++wear) {
+    problem.sensings.push_back({{2 + static_cast<int>(wear), 1.0}});
     const double earned = 1 - 0.75 * wear;
     const std::uint32_t worn = std::min(wear + 1, wears - 1);
-    units::row(problem, wear, run) = {{1 - slips, wear, wear, earned}, {slips, worn, wear, earned}};
-    units::row(problem, wear, replace) = {{1.0, 0, wears, -5.0}};
-    units::row(problem, wear, look) = {{1.0, wear, wears + wear, -1.0}};
+    row(problem, wear, run) = {{1 - wears_down, wear, wear, earned}, {wears_down, worn, wear, earned}};
+    row(problem, wear, replace) = {{1.0, 0, wears, -5.0}};
+    row(problem, wear, look) = {{1.0, wear, wears + wear, -1.0}};
   }
-  problem.starts.clear();
-  for (std::uint32_t wear = 0; wear < wears; ++wear) problem.starts.push_back({wear, 0.25});  // numbers them as here
   point_based::FlatModel model = flat_model(problem);
-  model.horizon = 22;
-  point_based::OnlineSarsop search{std::move(model)};
-  double belief[wears] = {1, 0, 0, 0};
-  for (int step = 0; step < 8; ++step) {
-    aos::List<std::pair<std::uint32_t, double>> entries;
-    for (std::uint32_t wear = 0; wear < wears; ++wear) {
-      if (belief[wear] > 0) entries.emplace_back(wear, belief[wear]);
-    }
-    EXPECT(search.move_to(entries));
+  model.horizon = horizon;
+  return model;
+}
+
+using Weights = aos::List<std::pair<std::uint32_t, double>>;
+Weights after_run(const Weights& belief, bool is_bad) {
+  double next[wears] = {}, total = 0;
+  for (const auto& [wear, probability] : belief) {
+    const double seen = probability * (is_bad ? chance_of_bad(wear) : 1 - chance_of_bad(wear));
+    next[wear] += (1 - wears_down) * seen;
+    next[std::min(wear + 1, wears - 1)] += wears_down * seen;
+    total += seen;
+  }
+  Weights after;
+  for (std::uint32_t wear = 0; wear < wears; ++wear) {
+    if (next[wear] > 0) after.emplace_back(wear, next[wear] / total);
+  }
+  return after;
+}
+
+TEST("Bounds close at each belief of a mission, also after plans that earlier ones needed were given up") {
+  point_based::OnlineSarsop search{machine(22)};
+  Weights belief{{0, 1.0}};
+  for (int step = 0; step < 8; ++step, belief = after_run(belief, step % 3 == 2)) {
+    EXPECT(search.move_to(belief));
     search.improve(100'000'000, never);
     const auto [lower, upper] = search.bounds();
     EXPECT(upper - lower <= 0.01 * std::abs(lower));
     std::uint64_t work = 0;
     search.losses(run, 22, 0, never, work);
-    double next[wears] = {}, total = 0;
-    for (std::uint32_t wear = 0; wear < wears; ++wear) {
-      const double seen = belief[wear] * (step % 3 == 2 ? chance_of_bad(wear) : 1 - chance_of_bad(wear));
-      next[wear] += (1 - slips) * seen;
-      next[std::min(wear + 1, wears - 1)] += slips * seen;
-      total += seen;
-    }
-    for (std::uint32_t wear = 0; wear < wears; ++wear) belief[wear] = next[wear] / total;
   }
+}
+
+TEST("With fewer decisions left a search goes on from what it knows, and not with more") {
+  point_based::OnlineSarsop search{machine(12)};
+  Weights belief{{0, 1.0}};
+  EXPECT(search.move_to(belief));
+  search.improve(100'000'000, never);
+  for (std::size_t left = 11; left > 6; --left) {
+    belief = after_run(belief, false);
+    EXPECT(search.move_to(belief, left));
+    const auto known = search.bounds();
+    point_based::OnlineSarsop anew{machine(left)};
+    EXPECT(anew.move_to(belief));
+    const auto before = anew.bounds();
+    anew.improve(100'000'000, never);
+    const auto [lower, upper] = anew.bounds();
+    EXPECT(known.first <= upper + 1e-9 && lower - 1e-9 <= known.second);
+    EXPECT(known.second - known.first < 0.1 * (before.second - before.first));
+  }
+  EXPECT(!search.move_to(belief, 13));
 }
 
 TEST("Each action has bounds of its own, of which the best are those of the belief") {

@@ -51,15 +51,20 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
 
     async def run(self, engine: Engine, step: int, within: Restriction = UNRESTRICTED) -> Plan:
         """Decide on what the engine believes, with what the restriction leaves."""
-        return await engine.plan(
+        ahead = self.horizon_at(step, engine)
+        plan = await engine.plan(
             simulations=None if self.time_s is not None else self.simulations,
             time_s=self.time_s,
             seed=self.seed_of(step),
-            horizon=self.horizon_at(step, engine),
+            horizon=ahead,
             planner=self.planner,
             threads=self.threads,
             within=within,
         )
+        if ahead == (self.horizon or engine.description.horizon):
+            return plan
+        decisions = "one decision" if ahead == 1 else f"{ahead} decisions"
+        return msgspec.structs.replace(plan, why=f"{plan.why}; the step limit leaves {decisions}")
 
     async def ponder(self, engine: Engine, step: int, index: int) -> None:
         """Look ahead below the action of decision `step` while it is carried out, if that is wanted."""

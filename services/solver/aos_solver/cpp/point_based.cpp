@@ -19,7 +19,8 @@ constexpr std::uint64_t between_looks = 20'000;  // at the clock, in operations
 }  // namespace
 
 struct OnlineSarsop::Solver {
-  explicit Solver(FlatModel flat) : model(std::move(flat)), outlook(model), regions(model), sarsop(model, regions) {}
+  explicit Solver(FlatModel flat)
+      : horizon(flat.horizon), model(std::move(flat)), outlook(model), regions(model), sarsop(model, regions) {}
 
   // Whether all states that are worth anything are in one region.
   bool is_in_one_region(const List<std::pair<std::uint32_t, double>>& belief) const {
@@ -75,6 +76,7 @@ struct OnlineSarsop::Solver {
     return found;
   }
 
+  const std::size_t horizon;  // that was asked for
   FlatModel model;
   Outlook outlook;
   Regions regions;
@@ -86,9 +88,13 @@ OnlineSarsop::~OnlineSarsop() = default;
 
 void OnlineSarsop::start_over() { solver_->sarsop.start_over(); }
 
-bool OnlineSarsop::move_to(const List<std::pair<std::uint32_t, double>>& belief) {
+bool OnlineSarsop::move_to(const List<std::pair<std::uint32_t, double>>& belief) { return move_to(belief, solver_->horizon); }
+
+bool OnlineSarsop::move_to(const List<std::pair<std::uint32_t, double>>& belief, std::size_t left) {
+  const std::size_t layers = solver_->model.horizon;
+  if (left != solver_->horizon && left > layers) return false;
   if (!solver_->is_in_one_region(belief)) return false;
-  solver_->sarsop.move_to({1, belief}, max_graph_bytes);
+  solver_->sarsop.move_to({1, belief}, std::min(left, layers), max_graph_bytes);
   return true;
 }
 

@@ -68,8 +68,10 @@ class OnlineSarsop {
   // Forgets what trials have found out and keeps the initial bounds.
   void start_over();
 
-  // Continues from a belief, by state, with the whole horizon left. The probabilities may sum to less than 1,
-  // and the missing part is worth nothing. Returns whether the model's starts can lead to this belief.
+  // Continues from a belief, by state, with the whole horizon left, or with fewer decisions. The probabilities may sum to less
+  // than 1, and the missing part is worth nothing. Returns whether the model's starts can lead to this belief, and whether the search
+  // can tell as many decisions apart.
+  bool move_to(const List<std::pair<std::uint32_t, double>>& belief, std::size_t left);
   bool move_to(const List<std::pair<std::uint32_t, double>>& belief);
 
   // Runs trials until `is_over()`, until `max_work` is done (0: no limit), or until nothing is left to find out. The last trial

@@ -27,7 +27,8 @@ inline std::pair<double, double> checked(double lower, double upper) {
 
 class Sarsop {
  public:
-  Sarsop(const FlatModel& model, const Regions& regions) : model_(model), regions_(regions), graph_(model, regions) {
+  Sarsop(const FlatModel& model, const Regions& regions)
+      : model_(model), regions_(regions), graph_(model, regions), left_(static_cast<std::uint32_t>(model.horizon)) {
     for (const Start& start : model.starts) add_start(start);
   }
   Sarsop(const Sarsop&) = delete;  // the parts refer to one another
@@ -55,8 +56,10 @@ class Sarsop {
     trial_.start_over();
   }
 
-  // Continues from another belief. Beliefs that are known are kept; beyond `max_bytes`, only useful alpha vectors are.
-  void move_to(const Start& start, std::size_t max_bytes) {
+  // Continues from another belief with as many decisions left, at most those of the model. Beliefs that are known are kept; beyond
+  // `max_bytes`, only useful alpha vectors are.
+  void move_to(const Start& start, std::size_t left, std::size_t max_bytes) {
+    left_ = static_cast<std::uint32_t>(left);
     if (graph_.bytes() > max_bytes) {
       prune([] { return false; });
       graph_.forget_beliefs();
@@ -228,9 +231,8 @@ class Sarsop {
       belief.states.push_back(local);
       belief.probabilities.push_back(probability / total);
     }
-    const auto left = static_cast<std::uint32_t>(model_.horizon);
     const double share = start.weight * total;
-    roots_.push_back({share, graph_.node_of(region, left, belief)});
+    roots_.push_back({share, graph_.node_of(region, left_, belief)});
   }
 
   // The branch of an action with fresh bounds, also of one that was dropped.
@@ -247,7 +249,7 @@ class Sarsop {
   // The node of a belief with the whole horizon to go.
   std::uint32_t anew_of(std::uint32_t number) {
     const Belief belief = graph_[number].belief;
-    return graph_.node_of(graph_[number].region, static_cast<std::uint32_t>(model_.horizon), belief);
+    return graph_.node_of(graph_[number].region, left_, belief);
   }
 
   // The action with the highest lower bound at a belief, after a search for a gap of at most `precision`, and whether it is
@@ -329,6 +331,7 @@ class Sarsop {
   BasePolicies policies_{model_, regions_, graph_};
   Trial trial_{model_, graph_, backups_};
   List<Root> roots_;
+  std::uint32_t left_;           // decisions at the roots; 0 without a horizon
   std::uint32_t persisted_ = 0;  // how many actions were repeated from the current roots
   std::size_t patience_ = 1;     // how many times as many vectors are added before they are pruned
   int idle_ = 0;                 // how many trials in a row have learnt nothing

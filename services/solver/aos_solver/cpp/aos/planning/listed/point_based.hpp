@@ -31,12 +31,13 @@ class PointBased {
     const auto entries = space_.weights_of(belief);
     running_ = belief.probability_of(Ending::running);
     if (entries.empty()) return {};
-    const bool is_known = search_ && numbering_ == space_.numbering() && horizon_ == horizon;
-    if (is_known && search_->move_to(entries)) return {};
+    const bool is_known = search_ && numbering_ == space_.numbering() && horizon <= most_ahead_;
+    horizon_ = horizon;
+    if (is_known && serves_horizon() && search_->move_to(entries, is_endless_ ? 0 : static_cast<std::size_t>(horizon))) return {};
     if (numbering_ != space_.numbering()) starts_.clear();
     starts_.push_back({1, entries});
     numbering_ = space_.numbering();
-    horizon_ = horizon;
+    most_ahead_ = horizon;
     if (tells_by_cells()) {
       if (const std::string obstacle = cells_.choose(space_.reports()); !obstacle.empty()) return obstacle;
     }
@@ -229,8 +230,8 @@ class PointBased {
   std::string take_model(const List<std::pair<std::uint32_t, double>>& entries) {
     point_based::FlatModel model = flat_model();
     error_ = error_of(model);
-    const double most_later = is_long() || is_large(model) ? point_based::much : point_based::next_to_nothing;
-    is_endless_ = switches::endless && may_be_endless_ && Model::discount < 1 && std::pow(Model::discount, horizon_) <= most_later;
+    is_large_ = is_large(model);
+    is_endless_ = switches::endless && may_be_endless_ && Model::discount < 1 && hardly_has_end();
     try {
       search_ = search_with(std::move(model), is_endless_ ? 0 : horizon_);
     } catch (const std::length_error&) {
@@ -243,6 +244,13 @@ class PointBased {
     search_->move_to(entries);
     return {};
   }
+  // Whether the discount leaves little enough of what comes after the horizon for a search that has none.
+  bool hardly_has_end() const {
+    const double most_later = is_long() || is_large_ ? point_based::much : point_based::next_to_nothing;
+    return std::pow(Model::discount, horizon_) <= most_later;
+  }
+  // Whether the search can be used with a horizon that has become shorter, as the last decisions before a step limit have it.
+  bool serves_horizon() const { return !is_endless_ || horizon_ == most_ahead_ || hardly_has_end(); }
   // What may be left of a value without a horizon for what comes after the horizon: at least and at most.
   std::pair<double, double> later() const {
     if (!is_endless_) return {0, 0};
@@ -290,7 +298,9 @@ class PointBased {
   List<point_based::Start> starts_;  // only one unless something surprising has happened
   std::unique_ptr<point_based::OnlineSarsop> search_;
   int horizon_ = 1;  // decisions
+  int most_ahead_ = 1;  // the longest horizon that the search serves
   bool is_endless_ = false;
+  bool is_large_ = false;
   NumberCells cells_;
   double error_ = 0;  // of bounds
   double running_ = 0;
