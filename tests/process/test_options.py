@@ -54,7 +54,7 @@ async def test_a_budget_in_time_ends_a_decision_of_options_after_a_first_look_th
         for child in (engine, other):
             await child.count_processor_time(True)
         hurried = await engine.plan(simulations=1, time_s=1e-6, seed=1)
-        unhurried = await other.plan(simulations=1, time_s=0.5, seed=1)
+        unhurried = await other.plan(simulations=1, time_s=3, seed=1)
     assert (hurried.planner, unhurried.planner) == ("options", "options")
     assert 100 < hurried.simulations < unhurried.simulations
 
