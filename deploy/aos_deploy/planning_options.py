@@ -61,7 +61,7 @@ class SearchOptions(NamedTuple):
     ] = None
 
     def search_in(self, planned: Planned) -> Search:
-        """The search for decisions, with the deploy file's step limit, and its horizon where none is given.
+        """The search for decisions: what is not given here is as in the deploy file.
 
         PlanningError where there is a policy that cannot be read.
         """
@@ -69,6 +69,7 @@ class SearchOptions(NamedTuple):
         policy = fields.pop("policy")
         fields["horizon"] = self.horizon or planned.horizon
         step_limit = planned.limits.step_limit if planned.limits else None
+        fields["plans_to_step_limit"] = planned.plans_to_step_limit
         return following(Search(**fields, step_limit=step_limit), policy)
 
 

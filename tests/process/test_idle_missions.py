@@ -87,7 +87,7 @@ async def test_nothing_is_begun_that_the_step_limit_does_not_let_end():
         built,
         lambda request: observed(request, "DefaultObservation"),
         limits=MissionLimits(step_limit=5),
-        search=Search(simulations=200, seed=1, step_limit=5),
+        search=Search(simulations=200, seed=1, step_limit=5, plans_to_step_limit=True),
     )
     assert [each.action for each in around.decisions] == ["dig"] * 3 + ["gather"] * 2
     assert [each.horizon for each in around.decisions] == [4, 4, 3, 2, 1]

@@ -79,8 +79,7 @@ class _World(QuietPorts):
 
     keeps_beliefs = True
 
-    def __init__(self, world: Engine, beside: Beside, most_steps: int):
-        """The mission is over after `most_steps`, of which the planner does not know."""
+    def __init__(self, world: Engine, beside: Beside):
         self.clock = SystemClock()
         self._world = world
         self._disturbance, self._steering = beside
@@ -90,7 +89,6 @@ class _World(QuietPorts):
         self.engine: Engine | None = None
         self.next: tuple[int, Successor] | None = None
         self.steps = 0
-        self._most_steps = most_steps
 
     def journal(self, kind: str, payload: Message):
         text = msgspec.json.encode(payload).decode()
@@ -111,8 +109,7 @@ class _World(QuietPorts):
         if self._disturbance is not None:
             await self._disturbance(self.engine, self.steps)
         step = await self._world.step_world(self._places[action])
-        is_last = self.steps >= self._most_steps
-        self.world_ending = Ending(step.ending) if step.ending else Ending.STEP_LIMIT if is_last else None
+        self.world_ending = Ending(step.ending) if step.ending else None
         monitors = await self._world.monitor_world()
         return Outcome(
             request.id, request.skill, "observed", step.response, numbers=step.numbers, monitors=monitors
@@ -149,13 +146,14 @@ async def play(
         project="p",
         cache_dir=str(cache_dir()),
         seed=seed,
+        step_limit=steps,
         **budget,
     )
     project = files_project(files)
     built = await built_project(project)
     engine = await Engine.start(built, seed=seed)
     world = await Engine.start(built, seed=seed + 1000)
-    around = _World(world, beside, steps)
+    around = _World(world, beside)
     around.engine = engine
     try:
         await world.reset_world(seed)

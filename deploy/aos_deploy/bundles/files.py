@@ -99,6 +99,7 @@ class Planned(msgspec.Struct, frozen=True):
     sources: tuple[Path, ...] = ()
     horizon: int | None = None
     limits: MissionLimits | None = None
+    plans_to_step_limit: bool = False
 
 
 def planned_of(path: Path) -> Planned:
@@ -116,6 +117,7 @@ def planned_of(path: Path) -> Planned:
         sources=(deployment.path,),
         horizon=deployment.file.solver.horizon,
         limits=msgspec.convert(deployment.file.mission, MissionLimits, from_attributes=True),
+        plans_to_step_limit=deployment.file.solver.plans_to_step_limit,
     )
 
 

@@ -65,14 +65,16 @@ class MissionPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
 class SolverPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """The budget of one decision, in simulations or in time, and what makes it reproducible.
 
-    Without a horizon the environment document's holds. With the planner `auto` the model, the belief and the
-    budget decide. POMCP can search with several `threads`; POMCP and SARSOP, with a budget in time, go on
-    while a skill runs. With a `policy`, which `aos solve` has written, nothing is searched.
+    Without a horizon the environment document's holds, and with `plans_to_step_limit` it ends where the
+    mission does. With the planner `auto` the model, the belief and the budget decide. POMCP can search with
+    several `threads`; POMCP and SARSOP, with a budget in time, go on while a skill runs. With a `policy`,
+    which `aos solve` has written, nothing is searched.
     """
 
     simulations: Count | None = None
     time_s: Seconds | None = None
     horizon: Horizon | None = None
+    plans_to_step_limit: bool = False
     policy: str | None = None
     planner: Literal["pomcp", "despot", "sarsop", "auto"] = "auto"
     threads: Annotated[int, msgspec.Meta(ge=1, le=32)] = 1

@@ -99,6 +99,7 @@ def _search(deployment: Deployment) -> Search:
         seed=solver.seed,
         time_s=solver.time_s,
         horizon=solver.horizon,
+        plans_to_step_limit=solver.plans_to_step_limit,
         planner=solver.planner,
         threads=solver.threads,
     )

@@ -24,6 +24,7 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     simulations: int = 100_000
     time_s: float | None = None
     horizon: int | None = None
+    plans_to_step_limit: bool = False
     seed: int = 1
     policy: str = ""
     stay: bool = False

@@ -15,7 +15,8 @@ SEEDS_PER_MISSION = 1000
 class Search(msgspec.Struct, frozen=True, kw_only=True):
     """The budget of one decision: `time_s` if given, else `simulations`. `horizon` None is the document's.
 
-    After `step_limit` decisions the mission is over: what cannot come before is worth nothing.
+    After `step_limit` decisions the mission is over. With `plans_to_step_limit` what cannot come before is
+    worth nothing; else the limit only guards against a mission that goes on too long.
 
     With a budget in time the search can go on while an action is carried out (`ponder_while_acting`). With a
     budget in simulations it never does: how far it came would depend on the machine, and decisions would not
@@ -27,6 +28,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
     time_s: float | None = None
     horizon: int | None = None
     step_limit: int | None = None
+    plans_to_step_limit: bool = False
     planner: Planner = DEFAULT_PLANNER
     threads: int = 1
     ponder_while_acting: bool = True
@@ -43,7 +45,9 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
     def horizon_at(self, step: int, engine: Engine) -> int:
         """The number of decisions that decision `step` looks ahead, itself among them."""
         horizon = self.horizon or engine.description.horizon
-        return horizon if self.step_limit is None else max(min(horizon, self.step_limit + 1 - step), 1)
+        if self.step_limit is None or not self.plans_to_step_limit:
+            return horizon
+        return max(min(horizon, self.step_limit + 1 - step), 1)
 
     def after_takeover(self) -> Search:
         """The way to decide with a model that has taken over."""
