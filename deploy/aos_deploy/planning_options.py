@@ -68,9 +68,9 @@ class SearchOptions(NamedTuple):
         fields = self._asdict()
         policy = fields.pop("policy")
         fields["horizon"] = self.horizon or planned.horizon
-        step_limit = planned.limits.step_limit if planned.limits else None
+        fields["step_limit"] = planned.limits.step_limit if planned.limits else None
         fields["plans_to_step_limit"] = planned.plans_to_step_limit
-        return following(Search(**fields, step_limit=step_limit), policy)
+        return following(Search(**fields), policy)
 
 
 class GivenOptions(NamedTuple):

@@ -133,6 +133,16 @@ TEST("What a step earns that changes nothing is told apart from what ways earn")
 }
 
 // Two jobs, each done by its action, which earns 20; the mission ends when both are done. A state has a bit for each.
+// What ways are searched for with, from a belief, with luck that is always the same.
+struct Ways {
+  explicit Ways(const Belief& belief) { library.prepare(belief, random); }
+
+  aos::Sampler random{1};
+  const aos::DecisionClock clock;
+  aos::OptionLibrary<TableModel> library{clock};
+  aos::SampledBelief<TableModel> sampled;
+};
+
 TEST("A reward that an action has earned does not count again where the mission may end with it") {
   Problem problem = world(4, 2, 0.95);
   problem.starts = {{0, 0.4}, {1, 0.3}, {2, 0.3}};
@@ -144,11 +154,8 @@ TEST("A reward that an action has earned does not count again where the mission 
     }
   }
   const Belief belief = initial_belief(problem);
-  aos::Sampler random{1};
-  const aos::DecisionClock clock;
-  aos::OptionLibrary<TableModel> library{clock};
-  library.prepare(belief, random);
-  aos::SampledBelief<TableModel> sampled;
+  Ways ways{belief};
+  auto& [random, clock, library, sampled] = ways;
   sampled.draw(belief, 30, random);
   double steps = 10'000;
   library.extend(sampled, steps, random);
@@ -166,7 +173,7 @@ TEST("A reward that an action has earned does not count again where the mission 
 // One of 50 things is wanted, the first one by 0.6, and all have worn as far as chance has it.
 TEST("How far a state that stands for others has worn moves no weight") {
   constexpr std::uint32_t things = 50, wears = 4;
-  Problem problem = units::world(things * wears, 2, 0.95);
+  Problem problem = world(things * wears, 2, 0.95);
   problem.starts.clear();
   for (std::uint32_t state = 0; state < things * wears; ++state) {
     const std::uint32_t thing = state / wears, wear = state % wears;
@@ -174,15 +181,12 @@ TEST("How far a state that stands for others has worn moves no weight") {
     problem.values[2 * state + 1] = static_cast<int>(wear);
     problem.starts.push_back({state, (thing == 0 ? 0.6 : 0.4 / (things - 1)) / wears});
     for (const std::uint32_t action : {0u, 1u}) {
-      if (wear + 1 < wears) units::row(problem, state, action) = {{1.0, state + 1, 0, 0}};
+      if (wear + 1 < wears) row(problem, state, action) = {{1.0, state + 1, 0, 0}};
     }
   }
   const Belief belief = initial_belief(problem);
-  aos::Sampler random{1};
-  const aos::DecisionClock clock;
-  aos::OptionLibrary<TableModel> library{clock};
-  library.prepare(belief, random);
-  aos::SampledBelief<TableModel> sampled;
+  Ways ways{belief};
+  auto& [random, clock, library, sampled] = ways;
   using State = TableModel::State;
   sampled.draw_alike(belief, 64, [](const State& state) { return static_cast<std::uint64_t>(state.variables[0]); }, random);
   sampled.rake(belief, library.searched_cells(), [](State& state) { state.variables[1] = 0; }, random);

@@ -42,9 +42,13 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
         """The seed of decision `step`, in 64 bits, so that missions with neighbouring seeds share none."""
         return (self.seed * SEEDS_PER_MISSION + step) % 2**64
 
+    def whole_horizon(self, engine: Engine) -> int:
+        """The number of decisions that a decision looks ahead, itself among them, far from the step limit."""
+        return self.horizon or engine.description.horizon
+
     def horizon_at(self, step: int, engine: Engine) -> int:
         """The number of decisions that decision `step` looks ahead, itself among them."""
-        horizon = self.horizon or engine.description.horizon
+        horizon = self.whole_horizon(engine)
         if self.step_limit is None or not self.plans_to_step_limit:
             return horizon
         return max(min(horizon, self.step_limit + 1 - step), 1)
@@ -65,7 +69,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
             threads=self.threads,
             within=within,
         )
-        if ahead == (self.horizon or engine.description.horizon):
+        if ahead == self.whole_horizon(engine):
             return plan
         decisions = "one decision" if ahead == 1 else f"{ahead} decisions"
         return msgspec.structs.replace(plan, why=f"{plan.why}; the step limit leaves {decisions}")

@@ -273,7 +273,7 @@ class Chooser:
         if ending is None:
             return None
         remark = remark_of_ending(ending, belief, self._limits)
-        if plan.horizon < (self.search.horizon or engine.description.horizon):
+        if plan.horizon < self.search.whole_horizon(engine):
             remark += " in the decisions that the step limit leaves"
         return Ended(ending, ": ".join(filter(None, (remark, "; ".join(without.reasons.values())))))
 
