@@ -146,12 +146,20 @@ class ListedBeliefs {
     return values;
   }
 
-  // Policies improved until nothing improves (Howard).
+  // Policies improved until nothing improves but by rounding (Howard): among policies worth the same it would go on for ever.
   Values best_policy_values() const {
     aos::List<std::size_t> policy(model_.states, 0);
-    Values values;
+    Values best;
+    Real most = -std::numeric_limits<Real>::infinity();
     for (bool has_improved = true; has_improved;) {
-      values = policy_values(policy);
+      Values values = policy_values(policy);
+      Real sum = 0, size = 0;
+      for (const Real value : values) {
+        sum += value;
+        size += std::abs(value);
+      }
+      if (sum <= most + 1e-15L * size) break;
+      most = sum;
       has_improved = false;
       for (std::size_t state = 0; state < model_.states; ++state) {
         for (std::size_t action = 0; action < model_.actions; ++action) {
@@ -162,8 +170,9 @@ class ListedBeliefs {
           has_improved = true;
         }
       }
+      best = std::move(values);
     }
-    return values;
+    return best;
   }
 
   std::size_t node_of(const Belief& belief, std::size_t left) {
