@@ -125,6 +125,11 @@ class EventReader:
                 return event
         return None
 
+    def kill(self) -> None:
+        """Ends the process and reads the rest, before whoever started it closes its pipe."""
+        self._process.kill()
+        self._reader.join(HANG_S)
+
     def ended(self) -> int:
         """The exit code, once all is read."""
         self._reader.join(HANG_S)

@@ -54,6 +54,7 @@ class System:
         self._environment = environment
         self._events = EventReader(process)
         self.ended = self._events.ended
+        self.kill = self._events.kill
 
     def until(self, kind: str, **fields: Any) -> dict[str, Any]:
         event = self._events.next(kind, **fields)
@@ -100,7 +101,7 @@ def up(folder: Path, *options: str) -> Iterator[System]:
         try:
             yield system
         finally:
-            process.kill()
+            system.kill()
 
 
 ERRAND = """\

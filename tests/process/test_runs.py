@@ -49,6 +49,7 @@ class Up:
     def __init__(self, process: subprocess.Popen[str]):
         self._process = process
         self._events = EventReader(process)
+        self.kill = self._events.kill
 
     def has_decided(self) -> bool:
         """Returns whether it came to a decision before its end."""
@@ -89,10 +90,11 @@ class Place:
         command = [BIN / "aos-up", self.deploy, "--json"]
         pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
         with subprocess.Popen(command, text=True, env=self.environment, **pipes) as process:
+            up = Up(process)
             try:
-                yield Up(process)
+                yield up
             finally:
-                process.kill()
+                up.kill()
 
     def run(self, *arguments: str, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
         return finished(BIN / "aos", *arguments, cwd=folder or self.folder, env=self.environment)
