@@ -157,7 +157,7 @@ def read_bundle_files(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
         hint = "A bundle is a directory with .ef, .sd, .am, .lf or .json files, or an archive of one"
         if close := did_you_mean_path(path):
             hint = close
-        elif path.suffix in (".pomdp", ".pomdpx"):
+        elif path.suffix.lower() in (".pomdp", ".pomdpx"):
             hint += f". Such a file is for `aos solve {path}`"
         elif path.suffix in (".yaml", ".yml"):
             hint += f". {path.name} may name some under `bundles:`"

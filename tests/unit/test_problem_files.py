@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from places import PROBLEMS, ROOT
 
+from aos_lab.formats import is_problem_file
 from aos_lab.formats.problem_files import read_problem
 from aos_lab.formats.problem_writers import write_problem
 from aos_lab.formats.sensing_by_state import with_sensing_by_state
@@ -35,6 +36,14 @@ def test_a_pomdp_file_with_wildcards_matrices_and_numbers_is_read():
     np.testing.assert_allclose(joint(model)[0, 0], [[0.85, 0.15], [0, 0]])
     np.testing.assert_allclose(joint(model)[1, 2], np.full((2, 2), 0.25))
     np.testing.assert_allclose(model.start_distribution(), [0.5, 0.5])
+
+
+@pytest.mark.parametrize("ending", [".POMDP", ".PomdpX"])
+def test_the_ending_of_a_problem_file_may_have_capital_letters(tmp_path, ending):
+    path = tmp_path / f"tiger{ending}"
+    write_problem(read_problem(PROBLEMS / "tiger.pomdp"), path)
+    assert is_problem_file(path)
+    assert read_problem(path).states == ("left", "right")
 
 
 def test_costs_excluded_starts_resets_and_rewards_by_observation_are_read():

@@ -18,7 +18,7 @@ from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, finite
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import progress
-from aos_lab.formats import PROBLEM_ENDINGS
+from aos_lab.formats import is_problem_file
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.rules.endings import MissionLimits
@@ -101,7 +101,7 @@ def simulate(
     """
     first, runs = deciding.seed, missions.runs
     done: list[SimulatedRun] = []
-    is_problem = bundle.suffix in PROBLEM_ENDINGS and not bundle.is_dir()
+    is_problem = is_problem_file(bundle)
     was_stopped = False
     try:
         if is_problem:

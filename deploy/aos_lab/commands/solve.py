@@ -23,7 +23,7 @@ from aos_deploy.places import cache_dir
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import progress, waiting
 from aos_deploy.views.values import Digits
-from aos_lab.formats import PROBLEM_ENDINGS
+from aos_lab.formats import is_problem_file, problem_ending
 from aos_lab.formats.graph_writers import c_header, graphviz, write_text
 from aos_lab.formats.policy_graph import PolicyGraph, policy_graph
 from aos_lab.formats.problem_files import read_problem
@@ -145,7 +145,7 @@ def solve(
     """
     exports = files.export or []
     _check_names(exports, files.graph)
-    if target.suffix in PROBLEM_ENDINGS and not target.is_dir():
+    if is_problem_file(target):
         if set_values:
             raise typer.BadParameter("a problem file has no mission parameters", param_hint="--set")
         found = _problem(target, solving.states, solving.discount)
@@ -180,7 +180,7 @@ def solve(
 def _check_names(exports: list[Path], graph: Path | None) -> None:
     """Refuses names of files with a wrong ending before the work begins."""
     for path in exports:
-        if path.suffix not in WRITERS:
+        if problem_ending(path) not in WRITERS:
             raise typer.BadParameter(f"{path} needs to end in {' or '.join(WRITERS)}", param_hint="--export")
     if graph is not None and graph.suffix not in _GRAPH_ENDINGS:
         endings = " or ".join(_GRAPH_ENDINGS)

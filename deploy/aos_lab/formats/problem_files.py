@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+from aos_lab.formats import problem_ending
 from aos_lab.formats.factored_model import MAX_STATES, flatten
 from aos_lab.formats.pomdp_reader import read_pomdp
 from aos_lab.formats.pomdpx_reader import read_pomdpx
@@ -18,7 +19,7 @@ def read_problem(
         data = path.read_bytes()
     except OSError as error:
         raise DocumentError(f"cannot read {path}: {error.strerror}", code="AOS101") from error
-    if path.suffix == ".pomdpx":
+    if problem_ending(path) == ".pomdpx":
         try:
             factored = read_pomdpx(str(path), data)
         except MemoryError:

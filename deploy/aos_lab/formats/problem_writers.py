@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from xml.sax.saxutils import escape
 
+from aos_lab.formats import problem_ending
 from aos_lab.formats.sensing_by_state import NEVER, SensingByState, with_sensing_by_state
 from aos_lab.formats.symbols import symbols
 from aos_protocol.errors import PlanningError
@@ -17,10 +18,10 @@ def write_problem(model: ExplicitModel, path: Path) -> None:
 
     PlanningError AOS320 for a name or a model that no format is for, AOS101 where the disk refuses.
     """
-    if path.suffix not in WRITERS:
+    if problem_ending(path) not in WRITERS:
         formats = " or ".join(WRITERS)
         raise PlanningError(f"{path} names no format", code="AOS320", hint=f"Let it end in {formats}")
-    lines = WRITERS[path.suffix](with_sensing_by_state(model))
+    lines = WRITERS[problem_ending(path)](with_sensing_by_state(model))
     try:
         with path.open("w") as file:
             file.writelines(f"{line}\n" for line in lines)
