@@ -48,6 +48,7 @@ class TracedModel(msgspec.Struct, frozen=True):
 def traced(emitted: EmittedModel) -> TracedModel:
     """The model with a mark at every statement of document code; the lines stay."""
     lines = emitted.cpp.split("\n")
+    lines[0] = '#include "aos/model/trace.hpp"'  # in place of a comment
     spans = list(emitted.snippets)
     pieces = list(range(1, len(spans) + 1))
     for piece in emitted.pieces:

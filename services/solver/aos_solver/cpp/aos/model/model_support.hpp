@@ -13,6 +13,5 @@
 #include "aos/model/sorted.hpp"
 #include "aos/model/state_text.hpp"
 #include "aos/model/text.hpp"
-#include "aos/model/trace.hpp"
 #include "aos/model/transition.hpp"
 #include "aos/model/violations.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "aos/draws/distributions.hpp"
-#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/number_key.hpp"
 
 namespace aos {
 

@@ -83,7 +83,7 @@ constexpr Member constant_member(const char* name, const T& constant) {
 
 class NamedTexts {
  public:
-  void add(std::string_view name, std::string_view text) { texts_.emplace_back(name, text); }
+  void add(std::string_view name, std::string_view text);
   bool empty() const { return texts_.empty(); }
   const std::vector<std::pair<std::string, std::string>>& texts() const { return texts_; }
   // The text of this name; null if there is none.

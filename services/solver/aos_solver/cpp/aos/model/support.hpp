@@ -18,6 +18,7 @@
 #include "aos/model/text.hpp"
 #include "aos/model/transition.hpp"
 #include "aos/model/value_text.hpp"
+#include "aos/text/utf8.hpp"
 
 namespace aos {
 
@@ -58,7 +59,9 @@ void Text::overflow(std::size_t size) {
 
 namespace detail {
 
-void no_text(std::size_t byte) {
+void check_letters(std::string_view text) {
+  const std::size_t byte = first_no_letter(text);
+  if (byte == std::string_view::npos) return;
   throw ModelFault{"AOS215", "the response's text is no UTF-8 at its byte " + std::to_string(byte) +
                                  ", where a letter is cut or none is"};
 }

@@ -7,7 +7,6 @@
 #include "aos/model/grounding.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
-#include "aos/text/utf8.hpp"
 
 namespace aos {
 
@@ -150,8 +149,9 @@ namespace detail {
 
 // These throw a ModelFault. They are kept out of the code that runs in every step.
 [[noreturn, gnu::cold]] void no_such_response(int response);
-[[noreturn, gnu::cold]] void no_text(std::size_t byte);
 [[noreturn, gnu::cold]] void no_such_reward(double reward);
+// A text that is no UTF-8 is a ModelFault.
+void check_letters(std::string_view text);
 // Called after each phase that has a reward, so that this phase is blamed and not the one after it.
 inline void check_reward(double reward) {
   if (!is_reward(reward)) no_such_reward(reward);
@@ -161,7 +161,7 @@ template <class Skill>
 Observation observation_of(const auto& effect) {
   if constexpr (Skill::has_text_response) {
     if (effect.text != no_text_response) {
-      if (const std::size_t byte = first_no_letter(effect.text); byte != std::string_view::npos) no_text(byte);
+      check_letters(effect.text);
       return text_observation(effect.text);
     }
   }

@@ -194,6 +194,8 @@ std::int64_t StateReader::next() {
   return number;
 }
 
+void NamedTexts::add(std::string_view name, std::string_view text) { texts_.emplace_back(name, text); }
+
 const std::string* NamedTexts::find(std::string_view name) const {
   const auto known = std::ranges::find(texts_, name, &std::pair<std::string, std::string>::first);
   return known != texts_.end() ? &known->second : nullptr;
