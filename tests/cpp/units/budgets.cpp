@@ -11,45 +11,32 @@ using aos::PlannerKind;
 constexpr int horizon = 10;
 constexpr std::uint64_t simulations = 2000;
 
-// A world whose states cannot be listed, and which counts its steps.
-struct Unlisted : OwnRollouts<Unlisted> {
-  inline static std::uint64_t steps = 0;
-  inline static std::uint64_t with_texts = 0;  // whose texts are remembered
-
-  static aos::Step step(State& state, int action, aos::Sampler& random) {
-    ++steps;
-    with_texts += aos::remembers_texts;
-    return TableModel::step(state, action, random);
-  }
-  static aos::Step step(State&, int, aos::Enumerator&) { throw aos::NotEnumerable{"there is a continuous draw"}; }
-  static aos::Step step(State&, int, aos::DirectedDraws&) { throw aos::NotEnumerable{"there is a continuous draw"}; }
-};
-
 // The steps that a planner takes of a prepared search.
-double steps_of(aos::Planner<Unlisted>& planner, const aos::Belief<Unlisted>& belief) {
+double steps_of(aos::Planner<TableModel>& planner, const Belief& belief) {
   const aos::BarredActions none;
-  const aos::Question<Unlisted> question{belief, {.simulations = simulations}, horizon, none};
+  const aos::Question<TableModel> question{belief, {.simulations = simulations}, horizon, none};
   aos::Sampler random{1};
   aos::Choosing choosing;
   planner.prepare(question, random, choosing);
-  Unlisted::steps = Unlisted::with_texts = 0;
+  TableModel::noisy_steps = TableModel::noisy_steps_with_texts = 0;
   planner.search(question, random, choosing.why);
-  return static_cast<double>(Unlisted::steps);
+  return static_cast<double>(TableModel::noisy_steps);
 }
 
 TEST("POMCP and DESPOT take as many steps of a model that cannot be listed, up to a factor of three, and remember no texts") {
-  const Problem tiger = units::tiger();
-  const auto belief = drawn_belief<Unlisted>(tiger);
-  aos::StateSpace<Unlisted> space;
-  aos::MdpValues<Unlisted> values{space};
-  aos::GroupMissions<Unlisted> missions;
-  aos::Pomcp<Unlisted> pomcp{space, values, missions};
-  aos::Despot<Unlisted> despot{space, values, missions};
+  Problem tiger = units::tiger();
+  tiger.noise = exam::Noise::refused;
+  const Belief belief = drawn_belief(tiger);
+  aos::StateSpace<TableModel> space;
+  aos::MdpValues<TableModel> values{space};
+  aos::GroupMissions<TableModel> missions;
+  aos::Pomcp<TableModel> pomcp{space, values, missions};
+  aos::Despot<TableModel> despot{space, values, missions};
   const double of_pomcp = steps_of(pomcp, belief);
-  EXPECT_EQUAL(Unlisted::with_texts, 0u);
+  EXPECT_EQUAL(TableModel::noisy_steps_with_texts, 0u);
   const double of_despot = steps_of(despot, belief);
   EXPECT(of_pomcp < 3 * of_despot);
-  EXPECT_EQUAL(Unlisted::with_texts, 0u);
+  EXPECT_EQUAL(TableModel::noisy_steps_with_texts, 0u);
   EXPECT(of_despot < 3 * of_pomcp);
 }
 

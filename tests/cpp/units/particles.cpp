@@ -9,8 +9,10 @@ namespace units::particles_tests {
 
 using namespace aos;
 
-// Eight noisy distances, each a letter of the response.
+// Eight noisy distances, each a letter of the response. Or a text that is assigned anew in the end, so that its beginnings
+// mislead.
 struct Beams {
+  inline static bool is_assigned_anew = false;
   struct State {
     int distances[8];
     bool operator==(const State&) const = default;
@@ -19,7 +21,14 @@ struct Beams {
   static Step step(State& state, int, Random& random) {
     EffectWithText effect;
     const ShownText shown{effect};
-    effect.text = "";
+    effect.text = is_assigned_anew ? "x" : "";
+    if (is_assigned_anew) {
+      const bool is_on = random.Bernoulli(0.5);
+      const bool is_seen = random.Bernoulli(is_on ? 0.9 : 0.2);
+      effect.text = is_seen ? "yes" : "no";
+      state.distances[0] = is_on;
+      return {0, text_observation(effect.text)};
+    }
     for (const int distance : state.distances) effect.text += letter(distance - std::abs(random.SampleNormal(0, 2.5)));
     return {0, text_observation(effect.text)};
   }
@@ -33,25 +42,9 @@ struct Beams {
   }
 };
 
-// The same, but the text is assigned anew in the end, so that its beginnings mislead.
-struct LateBeams : Beams {
-  template <class Random>
-  static Step step(State& state, int, Random& random) {
-    EffectWithText effect;
-    const ShownText shown{effect};
-    effect.text = "x";
-    const bool is_on = random.Bernoulli(0.5);
-    const bool is_seen = random.Bernoulli(is_on ? 0.9 : 0.2);
-    effect.text = is_seen ? "yes" : "no";
-    state.distances[0] = is_on;
-    return {0, text_observation(effect.text)};
-  }
-};
-
-template <class Model>
-double mean_weight(const typename Model::State& state, Observation seen, int trials, double& relative_deviation) {
+double mean_weight(const Beams::State& state, Observation seen, int trials, double& relative_deviation) {
   Sampler random{7};
-  GuidedStep<Model> guided{0, seen, nullptr, random};
+  GuidedStep<Beams> guided{0, seen, nullptr, random};
   double sum = 0;
   double squares = 0;
   for (int trial = 0; trial < trials; ++trial) {
@@ -65,6 +58,7 @@ double mean_weight(const typename Model::State& state, Observation seen, int tri
 }
 
 TEST("Texts of eight continuous draws are weighed without bias") {
+  Beams::is_assigned_anew = false;
   Sampler random{3};
   for (int model = 0; model < 8; ++model) {
     Beams::State state;
@@ -73,21 +67,28 @@ TEST("Texts of eight continuous draws are weighed without bias") {
     double exact = 1;
     for (int beam = 0; beam < 8; ++beam) exact *= Beams::probability(state.distances[beam], observation_text(seen)[beam]);
     double deviation = 0;
-    const double mean = mean_weight<Beams>(state, seen, 200, deviation);
+    const double mean = mean_weight(state, seen, 200, deviation);
     EXPECT_THAT(std::abs(mean / exact - 1) < 0.03, "the weight of " + std::string{observation_text(seen)});
     EXPECT_THAT(deviation < 0.3, "the deviation of the weight of " + std::string{observation_text(seen)});
   }
 }
 
 TEST("A text that is assigned anew is weighed without bias") {
+  Beams::is_assigned_anew = true;
   double deviation = 0;
-  const double mean = mean_weight<LateBeams>({}, text_observation("yes"), 20'000, deviation);
+  const double mean = mean_weight({}, text_observation("yes"), 20'000, deviation);
   EXPECT_THAT(std::abs(mean - 0.55) < 0.02, "a text assigned anew has weight " + std::to_string(mean));
 }
 
-// Forty cards, dealt in the beginning, of which each step turns one; noise tells all particles apart.
+// Forty cards, dealt in the beginning.
 struct Cards {
   static constexpr int count = 40;
+  enum class Game {
+    turn,  // Each step turns the next card; noise tells all particles apart.
+    hand,  // Of 35 cards 30 are turned. Then it is told whether the five others are all face up: rarely.
+    show,  // Each step shows a card that was drawn, and says of it what is true in four of five cases.
+  };
+  inline static Game game = Game::turn;
   struct State {
     std::uint64_t cards = 0;
     double noise = 0;
@@ -99,18 +100,26 @@ struct Cards {
   static void initial(State& state, Random& random) {
     state = {};
     for (int card = 0; card < count; ++card) state.cards |= std::uint64_t{random.Bernoulli(0.5)} << card;
+    if (game == Game::hand) state.cards &= (std::uint64_t{1} << 35) - 1;
   }
   static std::uint64_t hash(const State& state) {
     return (state.cards ^ std::bit_cast<std::uint64_t>(state.noise)) * 0x9e3779b97f4a7c15u;
   }
   template <class Random>
   static Step step(State& state, int, Random& random) {
-    state.noise = random.SampleUniform(0, 1);
+    if (game == Game::show) {
+      state.turned = (state.turned + (random.Bernoulli(0.5) ? 1 : 2)) % count;
+      const bool is_true = random.Bernoulli(0.8);
+      return {0, static_cast<Observation>((state.cards >> state.turned & 1) == is_true)};
+    }
+    if (game == Game::hand && state.turned == 30) return {0, state.cards >> 30 == 31 ? 1 : 0};
+    if (game == Game::turn) state.noise = random.SampleUniform(0, 1);
     return {0, static_cast<Observation>(state.cards >> state.turned++ & 1)};
   }
 };
 
 TEST("What particles have not observed yet stays open") {
+  Cards::game = Cards::Game::turn;
   Sampler random{5};
   ParticleFilter<Cards> filter{random};
   Cloud<Cards> cloud = filter.initial();
@@ -131,57 +140,34 @@ TEST("What particles have not observed yet stays open") {
   EXPECT_THAT(distance < 0.06, "the next card is open, on average, but for " + std::to_string(distance));
 }
 
-// Of 35 cards 30 are turned. Then five more are turned at once, all of them face up. One state is left then, so that no
-// move can make up for samples that were lost.
-struct Hand : Cards {
-  template <class Random>
-  static void initial(State& state, Random& random) {
-    Cards::initial(state, random);
-    state.cards &= (std::uint64_t{1} << 35) - 1;
-  }
-  template <class Random>
-  static Step step(State& state, int, Random&) {
-    if (state.turned < 30) return {0, static_cast<Observation>(state.cards >> state.turned++ & 1)};
-    return {0, state.cards >> 30 == 31 ? 1 : 0};
-  }
-};
-
 TEST("A rare observation after a long history leaves many samples") {
+  Cards::game = Cards::Game::hand;
   Sampler random{5};
-  ParticleFilter<Hand> filter{random};
-  Cloud<Hand> cloud = filter.initial();
+  ParticleFilter<Cards> filter{random};
+  Cloud<Cards> cloud = filter.initial();
   for (int step = 0; step <= 30; ++step) {
     const HistoryStep seen{.action = 0, .observation = 1, .is_observed = true};
     cloud = filter.after(std::move(cloud), seen, ignored_numbers).cloud;
   }
-  EXPECT_THAT(cloud.particles.size() == 1, "one state is left");
+  EXPECT_THAT(cloud.particles.size() == 1, "one state is left, so that no move can make up for samples that were lost");
   EXPECT_THAT(cloud.effective() >= 100, "a rare observation leaves " + std::to_string(cloud.effective()) + " samples");
 }
 
-// Of forty cards each step shows one that was drawn, and says of it what is true in four of five cases.
-struct Shown : Cards {
-  template <class Random>
-  static Step step(State& state, int, Random& random) {
-    state.turned = (state.turned + (random.Bernoulli(0.5) ? 1 : 2)) % count;
-    const bool is_true = random.Bernoulli(0.8);
-    return {0, static_cast<Observation>((state.cards >> state.turned & 1) == is_true)};
-  }
-};
-
 TEST("Moves that keep the states which particles have passed are those that repeat all") {
+  Cards::game = Cards::Game::show;
   Sampler random{5};
-  ParticleFilter<Shown> filter{random};
-  Cloud<Shown> cloud = filter.initial();
+  ParticleFilter<Cards> filter{random};
+  Cloud<Cards> cloud = filter.initial();
   for (int step = 0; step < 6; ++step) {
     const HistoryStep seen{.action = 0, .observation = step % 2 == 0, .is_observed = true};
     cloud = filter.after(std::move(cloud), seen, ignored_numbers).cloud;
   }
   EXPECT_THAT(cloud.history.steps()[0].is_guided, "steps are guided");
-  aos::List<Cloud<Shown>> moved;
+  aos::List<Cloud<Cards>> moved;
   aos::List<std::size_t> steps;
   for (const std::size_t bytes : {max_passage_bytes, std::size_t{0}}) {
     Sampler draws{7};
-    Moves<Shown> moves{cloud.history, draws, bytes};
+    Moves<Cards> moves{cloud.history, draws, bytes};
     moved.push_back(moves.moved(cloud));
     steps.push_back(moves.steps());
   }

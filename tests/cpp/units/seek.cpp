@@ -19,6 +19,7 @@ Problem corridor_with_a_thing(double found) {
   const std::uint32_t things = cells + 1;  // the last number: the robot has it
   const std::uint32_t states = cells * things;
   Problem problem = world(states + 2, 5, 0.98);
+  problem.noise = exam::Noise::drawn;  // as of a battery
   problem.endings[states] = 1;
   problem.endings[states + 1] = 2;
   problem.horizon = horizon;
@@ -43,15 +44,6 @@ Problem corridor_with_a_thing(double found) {
   return problem;
 }
 
-// Steps draw a number, as a battery does, so that states cannot be listed.
-struct Drained : OwnRollouts<Drained> {
-  template <class Random>
-  static aos::Step step(State& state, int action, Random& random) {
-    random.uniform();
-    return TableModel::step(state, action, random);
-  }
-};
-
 // What seek finds at the first cell, and whether it is ready to decide there.
 struct Found {
   aos::Sought sought;
@@ -61,19 +53,19 @@ struct Found {
   std::string decided_by;
 
   explicit Found(const Problem& problem) {
-    const auto belief = drawn_belief<Drained>(problem);
+    const auto belief = drawn_belief(problem);
     aos::Sampler random{2};
     const aos::BarredActions none;
-    aos::SeekPolicy<Drained> policy;
+    aos::SeekPolicy<TableModel> policy;
     sought = policy.find(belief, horizon, none, 100'000, random);
     returned_at_once = policy.returned_at_once();
-    aos::StateSpace<Drained> space;
-    aos::MdpValues<Drained> values{space};
-    aos::GroupMissions<Drained> missions;
-    aos::Pomcp<Drained> pomcp{space, values, missions};
+    aos::StateSpace<TableModel> space;
+    aos::MdpValues<TableModel> values{space};
+    aos::GroupMissions<TableModel> missions;
+    aos::Pomcp<TableModel> pomcp{space, values, missions};
     aos::Choosing choosing;
-    aos::SeekPlanner<Drained> planner{space, pomcp};
-    const aos::Question<Drained> question{belief, {.simulations = 500}, horizon, none};
+    aos::SeekPlanner<TableModel> planner{space, pomcp};
+    const aos::Question<TableModel> question{belief, {.simulations = 500}, horizon, none};
     is_ready = planner.prepare(question, random, choosing);
     if (is_ready) planner.search(question, random, why);
     decided_by = planner.name();
@@ -100,22 +92,22 @@ TEST("A thing that pays less than the way to it is not sought") {
 
 TEST("States that differ by what runs down alone are one state of a belief, with their weights") {
   const Problem problem = corridor_with_a_thing(60);
-  const auto belief = drawn_belief<Drained>(problem);
+  const auto belief = drawn_belief(problem);
   aos::Sampler random{2};
-  aos::SampledBelief<Drained> sampled;
-  sampled.draw_alike(belief, 64, [](const Drained::State& state) { return static_cast<std::uint64_t>(state.variables[1] % 2); }, random);
+  aos::SampledBelief<TableModel> sampled;
+  sampled.draw_alike(belief, 64, [](const TableModel::State& state) { return static_cast<std::uint64_t>(state.variables[1] % 2); }, random);
   EXPECT_EQUAL(sampled.size(), std::size_t{2});
   EXPECT_NEAR(sampled.weights()[0], 0.5, 0.05);
-  sampled.draw_alike(belief, 4, [](const Drained::State& state) { return static_cast<std::uint64_t>(state.variables[1]); }, random);
+  sampled.draw_alike(belief, 4, [](const TableModel::State& state) { return static_cast<std::uint64_t>(state.variables[1]); }, random);
   EXPECT_EQUAL(sampled.size(), std::size_t{4});
 }
 
 TEST("Where nothing is left to be sought, it is known what the best end at once returns") {
   Problem problem = corridor_with_a_thing(60);
   problem.starts = {{2 * (cells + 1) + cells, 1.0}};  // in the third cell, with the thing
-  const auto belief = drawn_belief<Drained>(problem);
+  const auto belief = drawn_belief(problem);
   aos::Sampler random{2};
-  aos::SeekPolicy<Drained> policy;
+  aos::SeekPolicy<TableModel> policy;
   EXPECT_EQUAL(policy.find(belief, horizon, aos::BarredActions{}, 100'000, random).action, -1);
   EXPECT_NEAR(policy.returned_at_once(), 60 * 0.98 * 0.98 - 0.2 - 0.2 * 0.98, 1e-9);
 }

@@ -23,11 +23,10 @@ template <class Model = TableModel>
 aos::Belief<Model> initial_belief(const Problem&&) = delete;
 
 // The same, drawn.
-template <class Model>
-aos::Belief<Model> drawn_belief(const Problem& problem) {
-  Model::take(problem);
+inline Belief drawn_belief(const Problem& problem) {
+  TableModel::take(problem);
   aos::Sampler random{1};
-  return aos::Belief<Model>::drawn(random);
+  return Belief::drawn(random);
 }
 
 // A state with which a problem begins. The problem is the model from then on, too.
@@ -38,15 +37,6 @@ inline TableModel::State first_state(const Problem& problem) {
   TableModel::initial(state, random);
   return state;
 }
-
-// A problem as a model that plays its own steps at random.
-template <class Own>
-struct OwnRollouts : TableModel {
-  static double rollout(const State& state, int& left, aos::Sampler& random) { return aos::rollout<Own>(state, left, random); }
-  static void rollout_odds(const State& state, double* odds, aos::Sampler& random) {
-    aos::rollout_odds<Own>(state, odds, action_count(), random);
-  }
-};
 
 // Where a row is not filled, the state stays, nothing is seen and nothing is earned.
 inline Problem world(std::size_t states, std::size_t actions, double discount) {

@@ -42,6 +42,9 @@ struct Start {
   double probability;
 };
 
+// Whether each step draws a number, so that states cannot be listed, and whether directed draws are refused as well.
+enum class Noise { none, drawn, refused };
+
 struct Problem {
   std::string name;
   double discount = 0;
@@ -54,6 +57,10 @@ struct Problem {
   aos::List<aos::List<Reading>> sensings;
   aos::List<Start> starts;
   aos::List<aos::List<Outcome>> rows;  // by state and action; none of a state that has ended
+
+  // What tests of the headers set, and no text says.
+  aos::List<int> conditions;  // how many conditions of the goal hold in each state; none where nobody counts them
+  Noise noise = Noise::none;
 
   std::size_t states() const { return endings.size(); }
   bool is_running(std::size_t state) const { return endings[state] == 0; }

@@ -31,16 +31,19 @@ struct TableModel {
   static constexpr const char* project = "exam";
   static constexpr bool has_rollout_policy = false;
   static constexpr bool has_state_heuristic = false;
-  static constexpr bool has_goal_conditions = false;
   static constexpr int skill_count = 1;
   inline static int horizon = 0;
   inline static double discount = 0;
+  inline static bool has_goal_conditions = false;
+  inline static std::uint64_t noisy_steps = 0;  // that were drawn
+  inline static std::uint64_t noisy_steps_with_texts = 0;  // whose texts are remembered
 
   // Makes a problem the one at hand; it must stay.
   static void take(const Problem& problem) {
     problem_ = &problem;
     horizon = problem.horizon;
     discount = problem.discount;
+    has_goal_conditions = !problem.conditions.empty();
     weights_.clear();
     weights_.resize(problem.rows.size() + problem.sensings.size());
     for (std::size_t row = 0; row < problem.rows.size(); ++row) {
@@ -126,6 +129,7 @@ struct TableModel {
   }
   template <class Random>
   static aos::Step step(State& state, int action, Random& random) {
+    if (problem_->noise != Noise::none) draw_noise(random);
     if (state.ending != aos::Ending::running) return {};
     const std::size_t number = number_of(state) * problem_->actions + static_cast<std::size_t>(action);
     const Outcome& outcome = problem_->rows[number][chosen(weights_[number], random)];
@@ -134,7 +138,7 @@ struct TableModel {
     return {outcome.reward, readings[chosen(weights_[problem_->rows.size() + outcome.sensing], random)].observation};
   }
   static bool meets_precondition(const State&, int, auto&) { return true; }
-  static int conditions_met(const State&) { return 0; }
+  static int conditions_met(const State& state) { return has_goal_conditions ? problem_->conditions[number_of(state)] : 0; }
 
   static double rollout(const State& state, int& left, aos::Sampler& random) {
     return aos::rollout<TableModel>(state, left, random);
@@ -160,6 +164,17 @@ struct TableModel {
     std::size_t slot = hash(state) & (slots_.size() - 1);
     while (slots_[slot] != none && !(states_[slots_[slot]] == state)) slot = (slot + 1) & (slots_.size() - 1);
     return slot;
+  }
+
+  template <class Random>
+  static void draw_noise(Random& random) {
+    if constexpr (std::derived_from<Random, aos::Sampler>) {
+      ++noisy_steps;
+      noisy_steps_with_texts += aos::remembers_texts;
+    } else if (problem_->noise == Noise::refused) {
+      throw aos::NotEnumerable{"there is a continuous draw"};
+    }
+    random.uniform();
   }
 
   template <class Random>
