@@ -18,9 +18,9 @@
 
 namespace aos {
 
-// What can be asked for; `options` and `savings` only by tests.
-enum class PlannerKind { automatic, pomcp, despot, sarsop, options, savings };
-inline constexpr const char* planner_names[] = {"auto", "pomcp", "despot", "sarsop", "options", "savings"};
+// What can be asked for.
+enum class PlannerKind { automatic, pomcp, despot, sarsop };
+inline constexpr const char* planner_names[] = {"auto", "pomcp", "despot", "sarsop"};
 
 // The planner of this name, if there is one that can be asked for.
 inline std::optional<PlannerKind> planner_kind(std::string_view name) {
@@ -125,7 +125,7 @@ class Planners {
   const Order all_{&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &rollouts_, &seek_, &pomcp_, &despot_};
   // Which planners are tried in turn, by what was asked for. The last ones can always decide.
   const Order order_[std::size(planner_names)] = {
-      {&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &seek_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}, {&options_, &pomcp_}, {&savings_, &pomcp_}};
+      {&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &seek_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}};
   // What is left of a budget in time after so much of it.
   static Budget left_of(Budget budget, std::chrono::nanoseconds spent) {
     if (budget.seconds > 0) budget.seconds = std::max(budget.seconds - std::chrono::duration<double>(spent).count(), 1e-6);

@@ -36,20 +36,17 @@ class OptionGains {
     const List<State>& states = belief.states();
     const List<Option>& options = library.options();
     const LeafCells<Model>& cells = library.cells();
+    *this = {};
     ways_ = options;
-    plans_.clear();
     is_tested_.assign(options.size(), false);
-    lengths_.clear();
     retries_ = library.retries();
     states_ = states.size();
     earned_.assign(options.size() * states_, 0);
     goes_on_.assign(options.size() * states_, 0);
     changed_.assign(options.size(), std::vector<bool>(cells.size()));
     ends_.assign(options.size(), false);
-    lasts_ = std::numeric_limits<double>::infinity();
     earns_without_end_.assign(options.size(), false);
     used_.assign(options.size(), false);
-    discounts_.clear();
     before_.resize(cells.size());
     after_.resize(cells.size());
     List<int> tries;  // by state

@@ -134,6 +134,7 @@ class OptionLibrary {
 
   // Adds the way that earns most before an end that can be had at once. Returns whether there is one.
   bool add_best_end(const State& state, double& steps, Sampler& random) {
+    if (!switches::best_end) return false;
     const Option way = BestEnd<Model>{clock_, retries()}.way_from(state, steps, random);
     return !way.empty() && add({way}, 1);
   }

@@ -54,7 +54,7 @@ class OptionMoves {
         reward += belief_.weights()[k] * step_.take(state, action, reports[k], steps, random);
       }
       steps -= OptionTests<Model>::steps_of_weighing(now.size());
-      const double told = information(belief_.weights(), reports, OptionRegret<Model>::observations, random);
+      const double told = information(belief_.weights(), reports, random);
       const double gained = told - tests_.information_of(action);
       if (gained <= most) continue;
       most = gained;

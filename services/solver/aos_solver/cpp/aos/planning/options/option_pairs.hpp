@@ -69,21 +69,12 @@ class OptionPairs {
     const double blind = regret_.value_seen() - regret_.now();
     const double alone = second.value - second.discount * (blind + second.spared);  // what it pays, and gains but for what is told
     double sum = 0;
-    const auto add = [&](double probability, const StateWeights& weights) {
+    const auto draw = [&](std::size_t k, StateWeights& weights) { first.draw(k, weights, random); };
+    after_each(first.listed(), first.times, belief_.weights(), random, draw, [&](double probability, const StateWeights& weights) {
       const double regret = regret_.after(weights);
       const double left = regret_.after(then.listed(), then.times, weights, steps, random, [&](std::size_t k, StateWeights& after) { then.draw(k, after, random); }).regret;
       const double known = regret_.value_seen(weights) - regret;
       sum += probability * std::max(alone - (1 - second.discount) * known + second.discount * (regret - left), 0.0);
-    };
-    const RepeatedObservation told = first.listed();
-    if (told.is_listed(first.times)) {
-      told.for_each(belief_.weights(), first.times, add);
-      return sum;
-    }
-    draw_states(belief_.weights(), OptionRegret<Model>::observations, random, [&](std::size_t k) {
-      StateWeights weights = belief_.weights();
-      first.draw(k, weights, random);
-      add(1.0 / OptionRegret<Model>::observations, weights);
     });
     return sum;
   }

@@ -85,7 +85,7 @@ class OptionPolicy {
     waited_ = 0;
     choose_moves(barred);
     regret_.begin();
-    const double kept = was_idle_ ? of_detours : 0;
+    const double kept = switches::detours && was_idle_ ? of_detours : 0;
     double left = (1 - kept) * affordable_ - taken_ - gains_.kept_steps();
     clock_.end_at(of_all - kept);
     values_.begin(belief_, horizon, tried_options + tried_moves_.size(), left, random);
@@ -107,8 +107,8 @@ class OptionPolicy {
     if (switches::tests_first) pairs_.add_to(candidates_, observing, left, random);
     left += kept * affordable_;
     clock_.end_at(of_all);
-    was_idle_ = switches::detours && is_idle();
-    if (was_idle_) take_detours(likely, horizon, barred, left, random);
+    was_idle_ = is_idle();
+    if (switches::detours && was_idle_) take_detours(likely, horizon, barred, left, random);
     settle(belief.probability_of(Ending::running), horizon);
     taken_ = affordable_ - left - gains_.kept_steps();
     return 1 + static_cast<std::uint64_t>(taken_ / horizon);

@@ -26,8 +26,6 @@ struct OptionCandidate {
 template <class Model>
 class OptionRegret {
  public:
-  static constexpr int observations = 16;  // drawn where not all are gone through
-
   struct Told {
     double regret = 0;
     List<double> avoided{};  // see OptionCandidate
@@ -91,19 +89,10 @@ class OptionRegret {
   Told after(const RepeatedObservation& observation, int times, const StateWeights& before, double& steps, Sampler& random, auto&& see) const {
     Told told;
     for (const std::size_t option : likely_) told.avoided.push_back(-std::max(gains_.earned(option, before), 0.0));
-    const auto note = [&](double probability, const StateWeights& weights) {
+    after_each(observation, times, before, random, see, [&](double probability, const StateWeights& weights) {
       told.regret += probability * after(weights);
       for (std::size_t i = 0; i < likely_.size(); ++i) told.avoided[i] += probability * std::max(gains_.earned(likely_[i], weights), 0.0);
       steps -= steps_of_best();
-    };
-    if (observation.is_listed(times)) {
-      observation.for_each(before, times, note);
-      return told;
-    }
-    draw_states(before, observations, random, [&](std::size_t k) {
-      StateWeights weights = before;
-      see(k, weights);
-      note(1.0 / observations, weights);
     });
     return told;
   }

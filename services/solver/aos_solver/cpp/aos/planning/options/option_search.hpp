@@ -130,12 +130,10 @@ class OptionSearch {
   }
   // The same at width 1 only.
   List<Option> narrow(const State& state, double& steps, Sampler& random) { return searched(state, 1, steps, random); }
-  // The ways from a state after which the mission goes on, the best first.
+  // The ways from a state after which the mission goes on, the best first. No conditions are counted.
   List<Option> past_ends(const State& state, double& steps, Sampler& random) {
     passes_ends_ = true;
-    List<Option> found = narrow(state, steps, random);
-    if (found.empty()) found = searched(state, 2, steps, random);
-    return found;
+    return from(state, steps, random);
   }
 
  private:

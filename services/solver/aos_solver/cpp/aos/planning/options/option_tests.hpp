@@ -31,7 +31,7 @@ class OptionTests {
   // How many steps of the model take as long as to weigh so many states by what is drawn from them.
   static double steps_of_weighing(std::size_t states) {
     constexpr double of_likelihood = 0.2;
-    return of_likelihood * OptionRegret<Model>::observations * states;
+    return of_likelihood * drawn_observations * states;
   }
 
   OptionTests(const SampledBelief<Model>& belief, OptionRegret<Model>& regret, const OwnChanges<Model>& changes, OptionTwins<Model>& twins,
@@ -71,7 +71,7 @@ class OptionTests {
         return step_.take(state, a, reports_[a][k], steps, random);
       });
       steps -= steps_of_weighing(belief_.size());
-      informations_[a] = information(belief_.weights(), reports_[a], OptionRegret<Model>::observations, random);
+      informations_[a] = information(belief_.weights(), reports_[a], random);
       if (informations_[a] <= least_information) continue;
       const bool is_priced = twins_.are_known() && twins_.tells_of_options(static_cast<int>(a), reports_[a], steps, random);
       tests_.push_back({static_cast<int>(a), reward, informations_[a], is_priced});

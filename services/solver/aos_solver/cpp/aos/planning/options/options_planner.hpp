@@ -24,9 +24,8 @@ class OptionsPlanner final : public Planner<Model> {
   // POMCP has more to go by where the documents have a rollout policy, or values without observations can be computed.
   bool prepare(const Question<Model>& question, Sampler& random, Choosing& choosing) override {
     const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
-    const bool is_asked = is_by_name || (!is_listed && switches::options && !Model::has_rollout_policy && !pomcp_.has_wide_values(belief, horizon));
     has_looked_ = false;
-    if (!is_asked) return false;
+    if (is_listed || !switches::options || Model::has_rollout_policy || pomcp_.has_wide_values(belief, horizon)) return false;
     // Options count what comes after an action. Where nothing does, POMCP finds the mean reward of each.
     if (horizon == 1) {
       choosing.why += "; the mission is planned for one decision, which no way to a reward goes beyond";
@@ -95,7 +94,7 @@ class OptionsPlanner final : public Planner<Model> {
     const double affordable = affordable_.of(budget, question.horizon);
     std::string obstacle = policy_.prepare(question.belief, affordable, budget.seconds, random);
     affordable_.note(policy_.taken(), PlanningClock::now() - start);
-    if (!obstacle.empty() || question.is_by_name) return obstacle;
+    if (!obstacle.empty()) return obstacle;
     const ForgottenTexts forgotten;
     if (!is_neglect_dear_) is_neglect_dear_ = policy_.is_neglect_dear(question.horizon, random);
     if (*is_neglect_dear_) return "what is neglected costs more than ways to rewards earn";

@@ -63,4 +63,15 @@ class RepeatedObservation {
   List<List<double>> likelihoods_;  // [response][state]; empty if they are too many
 };
 
+// Calls `use(probability, weights)` with the weights after an observation that is made so many times. Where all that can be observed is too much,
+// it is drawn: `see(k, weights)` draws from state k.
+void after_each(const RepeatedObservation& observation, int times, const StateWeights& before, Sampler& random, auto&& see, auto&& use) {
+  if (observation.is_listed(times)) return observation.for_each(before, times, use);
+  draw_states(before, drawn_observations, random, [&](std::size_t k) {
+    StateWeights weights = before;
+    see(k, weights);
+    use(1.0 / drawn_observations, weights);
+  });
+}
+
 }

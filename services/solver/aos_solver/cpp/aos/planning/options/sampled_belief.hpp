@@ -13,6 +13,8 @@ namespace aos {
 
 using StateWeights = List<double>;  // by state; they sum to 1
 
+inline constexpr int drawn_observations = 16;  // where not all can be listed
+
 // Calls `use` with the numbers of so many states, drawn at even distances in the weights.
 inline void draw_states(const StateWeights& weights, int count, Sampler& random, FunctionRef<void(std::size_t)> use) {
   double place = random.uniform() / count;
@@ -37,7 +39,7 @@ inline void observe(const List<StepReports>& reports, const Seen& seen, StateWei
 }
 
 // The mutual information of the state and what is observed, in nats; estimated from drawn observations where not all can be listed.
-inline double information(const StateWeights& weights, const List<StepReports>& reports, int draws, Sampler& random) {
+inline double information(const StateWeights& weights, const List<StepReports>& reports, Sampler& random) {
   const auto told = [&](const Seen& seen, std::size_t k) { return weights[k] > 0 ? reports[k].likelihood(seen) : 0; };
   const List<Observation> responses = few_responses(reports);
   double sum = 0;
@@ -51,14 +53,14 @@ inline double information(const StateWeights& weights, const List<StepReports>& 
     if (all > 0) sum -= all * std::log(all);
   }
   if (!responses.empty()) return sum;
-  draw_states(weights, draws, random, [&](std::size_t k) {
+  draw_states(weights, drawn_observations, random, [&](std::size_t k) {
     const Seen seen = reports[k].drawn(random);
     double all = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) all += weights[i] * told(seen, i);
     const double own = told(seen, k);
     if (own > 0 && all > 0) sum += std::log(own / all);
   });
-  return sum / draws;
+  return sum / drawn_observations;
 }
 
 template <class Model>

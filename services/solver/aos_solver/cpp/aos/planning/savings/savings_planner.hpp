@@ -23,12 +23,11 @@ class SavingsPlanner final : public Planner<Model> {
 
   bool prepare(const Question<Model>& question, Sampler& random, Choosing& choosing) override {
     const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
-    const bool is_asked = is_by_name || (switches::savings && !is_listed && options_.finds_nothing());
-    if (!is_asked || belief.probability_of(Ending::running) <= 0) return false;
+    if (!switches::savings || is_listed || !options_.finds_nothing() || belief.probability_of(Ending::running) <= 0) return false;
     Sampler own{Sampler{random}.bits()};
     if (!yields_) {
       if (!policy_.learn(belief, horizon, own)) return false;
-      const bool asks = switches::saving_rollouts && !has_asked_ && !is_by_name;
+      const bool asks = switches::saving_rollouts && !has_asked_;
       find_ways(question, asks ? 1 - of_rollouts : 1, own, choosing);
       if (asks) yields_ = do_rollouts_tell_more(question, own, choosing);
       has_asked_ = true;

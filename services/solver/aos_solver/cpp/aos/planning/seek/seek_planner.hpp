@@ -69,7 +69,7 @@ class SeekPlanner final : public Planner<Model> {
  private:
   bool is_open(const Question<Model>& question) {
     const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
-    if (!switches::seek || is_by_name || is_listed || horizon == 1 || Model::has_rollout_policy) return false;
+    if (!switches::seek || is_listed || horizon == 1 || Model::has_rollout_policy) return false;
     return belief.probability_of(Ending::running) >= 1 && !pomcp_.has_wide_values(belief, horizon) && looks_.is_due();
   }
   void seek(const Question<Model>& question, Sampler random) {
