@@ -40,6 +40,19 @@ TEST("POMCP and DESPOT take as many steps of a model that cannot be listed, up t
   EXPECT(of_despot < 3 * of_pomcp);
 }
 
+TEST("A robot that can act in hundreds of ways does not seek where to look round takes more steps than it has") {
+  constexpr double steps = 20'000;
+  Problem problem = world(160, 400, 0.95);
+  start_evenly(problem, 0, 160);
+  const auto belief = drawn_belief<Unlisted>(problem);
+  aos::Sampler random{1};
+  aos::SeekPolicy<Unlisted> policy;
+  policy.find(belief, horizon, {}, 10, random);  // what runs down is found out once
+  Unlisted::steps = 0;
+  EXPECT_EQUAL(policy.find(belief, horizon, {}, steps, random).action, -1);
+  EXPECT(Unlisted::steps <= steps);
+}
+
 TEST("No planner takes much more than its budget in simulations, and POMCP takes all of it") {
   const Problem problem = corridor_with_exits(30, 3);
   const Belief belief = initial_belief(problem);

@@ -268,6 +268,30 @@ TEST("Of an end that is taken is told what it earns") {
   EXPECT(std::abs(estimates[leave].q - 2) < 1e-9);
 }
 
+TEST("What is earned by luck is told with the error of the tries") {
+  Problem problem = units::world(2, 1, 0.95);
+  problem.endings[1] = 1;
+  units::row(problem, 0, take - 2) = {{0.5, 1, 0, 10}, {0.5, 1, 0, 0}};
+  const auto told = told_by_options(problem, initial_belief(problem)).front();
+  EXPECT(told.standard_error > 0.2);
+  EXPECT(std::abs(told.q - 5) < 3 * told.standard_error);
+}
+
+TEST("A plain plan after which the mission goes on is told with what may still be earned, and one that ends it is not") {
+  const Problem problem = two_rooms(0.5, 0.5);
+  const Belief belief = initial_belief(problem);
+  aos::Sampler random{1};
+  aos::OptionPolicy<TableModel> policy;
+  policy.prepare(belief, 1e6, 0, random);
+  policy.search(belief, problem.horizon, random, {});
+  const double seen = 10;  // at least one thing is there in three of four states
+  policy.settle_for({look, -2, 0.1, 0}, 4, 20);
+  EXPECT(policy.estimates()[look].q == -2 && policy.estimates()[look].standard_error == 0.1);
+  policy.settle_for({look, -2, 0.1, 1}, 4, 20);
+  EXPECT(policy.estimates()[look].q == 1);
+  EXPECT(policy.estimates()[look].standard_error > (seen / 2 + 2) / 2);
+}
+
 // Three things that may be sound, of which each can be tested and taken, once, until a stall closes. A state has a bit for each that is sound and each that is
 // taken, and the steps that are left.
 Problem three_things(std::uint32_t steps, double of_unsound) {

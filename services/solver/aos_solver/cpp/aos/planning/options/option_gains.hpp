@@ -7,6 +7,7 @@
 #pragma once
 
 #include "aos/base/stable_order.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/planning/options/optimal_stopping.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/option_sequels.hpp"
@@ -43,12 +44,14 @@ class OptionGains {
     states_ = states.size();
     earned_.assign(options.size() * states_, 0);
     goes_on_.assign(options.size() * states_, 0);
+    errors_.assign(options.size() * states_, 0);
     changed_.assign(options.size(), std::vector<bool>(cells.size()));
     ends_.assign(options.size(), false);
     earns_without_end_.assign(options.size(), false);
     used_.assign(options.size(), false);
     before_.resize(cells.size());
     after_.resize(cells.size());
+    of_length_ = library.counts() ? share_of_length : 0;
     List<int> tries;  // by state
     for (const double weight : belief.weights()) tries.push_back(std::max<int>(least_tries, std::lround(least_tries * even * weight)));
     const int all_tries = std::accumulate(tries.begin(), tries.end(), 0);
@@ -143,6 +146,12 @@ class OptionGains {
     for (std::size_t k = 0; k < states_; ++k) sum += weights[k] * earned_[option * states_ + k];
     return sum;
   }
+  // The error of what an option earns that is no plan: few tries were made, and a way that was found by conditions may be too long.
+  double error(std::size_t option, const StateWeights& weights) const {
+    double squares = 0;
+    for (std::size_t k = 0; k < states_ && !is_plan(option); ++k) squares += weights[k] * weights[k] * errors_[option * states_ + k];
+    return std::sqrt(squares);
+  }
   // Whether the option was among the best ones of a call since the last measurement.
   bool is_used(std::size_t option) const { return used_[option]; }
 
@@ -189,6 +198,8 @@ class OptionGains {
  private:
   static constexpr int least_tries = 2;  // of each option from each state
   static constexpr double share_of_sequels = 0.2;  // of the steps that are left
+  // Of what a way costs that was found by conditions, as an error: towers were built for 15 % less (docs/lab/values.md).
+  static constexpr double share_of_length = 0.25;
   static constexpr int max_ends = 4;  // options one after the other that may end the mission
   static constexpr double negligible = 1e-6;
 
@@ -204,10 +215,13 @@ class OptionGains {
 
   void take(std::size_t option, std::size_t k, const State& start, int tries, const LeafCells<Model>& cells, Sampler& random) {
     cells.write(start, before_.data());
+    SampleMean earned;
+    double last = 0;
     for (int i = 0; i < tries; ++i) {
       State state = start;
       const OptionOutcome outcome = taken_option<Model>(ways_[option], state, random, retries_);
-      earned_[option * states_ + k] += outcome.earned / tries;
+      earned.add(outcome.earned);
+      last += outcome.last / tries;
       goes_on_[option * states_ + k] += outcome.goes_on / tries;
       if (outcome.goes_on == 0) ends_[option] = true;
       else if (outcome.earned > 0) earns_without_end_[option] = true;
@@ -217,6 +231,9 @@ class OptionGains {
         if (before_[i] != after_[i]) changed_[option][i] = true;
       }
     }
+    earned_[option * states_ + k] = earned.mean();
+    const double of_length = of_length_ * std::max(last - earned.mean(), 0.0);
+    errors_[option * states_ + k] = earned.error() * earned.error() + of_length * of_length;
   }
 
   void support_of(const StateWeights& weights) const {
@@ -304,6 +321,8 @@ class OptionGains {
   const RunningDown<Model>* retries_ = nullptr;  // actions that change nothing else are taken again
   List<double> earned_;   // [option * states + state]
   List<double> goes_on_;  // [option * states + state]
+  List<double> errors_;   // [option * states + state], squared
+  double of_length_ = 0;
   List<double> discounts_;
   List<double> lengths_;  // in steps
   std::vector<bool> ends_;  // in some state, and earns nothing where it does not

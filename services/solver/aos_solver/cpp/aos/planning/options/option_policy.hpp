@@ -137,10 +137,13 @@ class OptionPolicy {
     const Followed seen = values_.mean();
     return seen.discount * lost > seen.earned;
   }
-  // Lets a plain plan decide. What was told of all else is `lost` too much.
-  void settle_for(const PlainPlan& plain, double lost) {
+  // Lets a plain plan decide. What was told of all else is `lost` too much. Where the mission goes on after the plan it plans anew, so that half of
+  // what was promised above it is told. It may return as little as the plan, and as much as the states are worth if they are seen.
+  void settle_for(const PlainPlan& plain, double promised, double lost) {
     for (ActionEstimate& estimate : estimates_) estimate.q -= estimate.n > 0 ? lost : 0;
-    estimates_[plain.action] = {plain.returned, static_cast<std::uint32_t>(belief_.size()), plain.error};
+    const double above = plain.goes_on * std::max(promised - plain.returned, 0.0) / 2;
+    const double open = plain.goes_on * std::max(regret_.value_seen() - plain.returned, 0.0) / 2;
+    estimates_[plain.action] = {plain.returned + above, static_cast<std::uint32_t>(belief_.size()), std::hypot(plain.error, std::max(above, open))};
     reason_ = "that promises of this mission were not kept";
   }
   // Whether a way to a reward was found, in this mission, from any state.
@@ -250,6 +253,7 @@ class OptionPolicy {
     const double value = gains_.earned(option, belief_.weights()) + gains_.discount(option) * later;
     candidates_.push_back({gains_.way(option).front(), value, gains_.discount(option), gains_.is_plan(option) ? "what can be observed" : "what can be earned"});
     candidates_.back().goes_on = goes_on;
+    candidates_.back().error = gains_.error(option, belief_.weights());
   }
 
   // Notes the option that is the best candidate so far, if one is.
@@ -340,7 +344,7 @@ class OptionPolicy {
       const double times = seen > 0 ? 1 + std::max(beyond, 0.0) / seen : 1;
       const double waiting = waiting_cost(times, horizon) / 2;
       later = best->goes_on * (open + share * beyond - waiting) - waited_;
-      error = std::hypot(best->goes_on * std::hypot(left, waiting), best->goes_on * std::max(share, 1 - share) * beyond / 2, error);
+      error = std::hypot(best->goes_on * std::hypot(left, waiting), best->goes_on * std::max(share, 1 - share) * beyond / 2, std::hypot(error, best->error));
     }
     for (const OptionCandidate& candidate : candidates_) {
       ActionEstimate& estimate = estimates_[candidate.action];

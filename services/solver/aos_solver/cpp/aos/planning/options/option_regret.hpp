@@ -21,6 +21,7 @@ struct OptionCandidate {
   double spared = 0;              // of the regret, by what is observed
   List<List<StepReports>> reports{};  // of a move that goes on for certain: [step][state]
   double goes_on = 1;  // the probability that the mission does
+  double error = 0;    // of the value, beside that few states are drawn
 };
 
 template <class Model>

@@ -29,10 +29,12 @@ inline void add_with_rests(List<Option>& options, const Option& option, std::siz
   }
 }
 
-// What an option earned from a state, discounted, and the probability that the mission goes on after it.
+// What an option earned from a state, discounted, the probability that the mission goes on after it, and what its last action earned,
+// not discounted.
 struct OptionOutcome {
   double earned = 0;
   double goes_on = 1;
+  double last = 0;
 };
 
 // How often an action of an option is taken that changes nothing, as a grip that slips, where a way has many of them.
@@ -70,13 +72,20 @@ OptionOutcome taken_option(const Option& option, typename Model::State& state, S
   OptionOutcome outcome;
   double discount = 1;
   for (const int action : option) {
+    const double first = discount;
+    double earned = 0;
     if (retries != nullptr) {
-      outcome.earned += attempted<Model>(action, state, discount, random, *retries);
+      earned = attempted<Model>(action, state, discount, random, *retries);
     } else {
-      outcome.earned += discount * Model::step(state, action, random).reward;
+      earned = discount * Model::step(state, action, random).reward;
       discount *= Model::discount;
     }
-    if (Model::ending(state) != Ending::running) return {outcome.earned, 0};
+    outcome.earned += earned;
+    outcome.last = earned / first;
+    if (Model::ending(state) != Ending::running) {
+      outcome.goes_on = 0;
+      break;
+    }
   }
   return outcome;
 }

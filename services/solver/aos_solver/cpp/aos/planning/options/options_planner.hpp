@@ -116,7 +116,7 @@ class OptionsPlanner final : public Planner<Model> {
       plain.returned *= running;
       plain.error *= running;
       const double sure = plain.returned - 2 * plain.error;
-      if (plain.action >= 0 && sure > std::max(policy_.least(), value - promises_.lost())) return policy_.settle_for(plain, promises_.lost());
+      if (plain.action >= 0 && sure > std::max(policy_.least(), value - promises_.lost())) return policy_.settle_for(plain, value, promises_.lost());
     }
     promises_.tell(chosen, value, running * policy_.reward_of(chosen, random), Model::discount);
   }

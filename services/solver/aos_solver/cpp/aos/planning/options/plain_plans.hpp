@@ -9,11 +9,13 @@
 
 namespace aos {
 
-// What a plain plan returns from the states of a belief, on average, with its standard error.
+// What a plain plan returns from the states of a belief, on average, with its standard error, and the probability that the mission goes on
+// after it.
 struct PlainPlan {
   int action = -1;  // none
   double returned = 0;
   double error = 0;
+  double goes_on = 1;
 };
 
 template <class Model>
@@ -52,8 +54,13 @@ class PlainPlans {
   // What an action returns that is taken so many times.
   static PlainPlan played(int action, const SampledBelief<Model>& belief, std::size_t tries, int length, Sampler& random) {
     SampleMean mean;
-    draw_states(belief.weights(), tries, random, [&](std::size_t k) { mean.add(returned(belief.states()[k], action, length, random)); });
-    return {action, mean.mean(), mean.error()};
+    double running = 0;
+    draw_states(belief.weights(), tries, random, [&](std::size_t k) {
+      State state = belief.states()[k];
+      mean.add(earned_in<Model>(length, state, [&](std::size_t) { return Model::step(state, action, random).reward; }).sum);
+      running += Model::ending(state) == Ending::running ? 1 : 0;
+    });
+    return {action, mean.mean(), mean.error(), running / mean.count()};
   }
 
  private:
@@ -75,10 +82,6 @@ class PlainPlans {
       mean.add(earned_in<Model>(horizon, state, lost).sum);
     });
     return mean.mean() - 2 * mean.error();
-  }
-
-  static double returned(State state, int action, int length, Sampler& random) {
-    return earned_in<Model>(length, state, [&](std::size_t) { return Model::step(state, action, random).reward; }).sum;
   }
 };
 

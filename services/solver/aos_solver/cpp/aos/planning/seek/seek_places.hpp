@@ -44,9 +44,9 @@ class SeekPlaces {
   };
   using Ways = List<Arrival>;  // by place
 
-  // Finds places from the states of a belief on, breadth first, all states in step and under the same luck. Takes at most
-  // half of the steps.
-  void explore(const SampledBelief<Model>& belief, RunningDown<Model>& running_down, const BarredActions& barred, double& steps, Sampler& random) {
+  // Finds places from the states of a belief on, breadth first, all states in step and under the same luck. Takes about half of the steps
+  // at most. Returns whether these were enough for all actions where the robot is.
+  bool explore(const SampledBelief<Model>& belief, RunningDown<Model>& running_down, const BarredActions& barred, double& steps, Sampler& random) {
     places_.clear();
     tests_.clear();
     ends_.clear();
@@ -61,10 +61,12 @@ class SeekPlaces {
     for (std::uint32_t number = 0; number < places_.size() && steps > least; ++number) {
       places_[number].moves.resize(actions);
       for (std::size_t a = 0; a < actions; ++a) {
+        if (number == 0 && steps <= least) return false;
         if (!barred.contains(a)) take(number, a, belief, running_down, steps, random);
       }
     }
     for (Place& place : places_) place.moves.resize(actions);
+    return true;
   }
 
   const List<Place>& places() const { return places_; }

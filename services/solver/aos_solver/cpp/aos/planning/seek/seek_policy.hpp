@@ -30,14 +30,16 @@ class SeekPolicy {
  public:
   using State = typename Model::State;
 
-  // Finds the policy for a belief and plays missions by it, in about so many steps of the model. None where no test wins.
+  // Finds the policy for a belief and plays missions by it, in about so many steps of the model. None where no test wins, or where half of
+  // the steps do not do to look round.
   Sought find(const Belief<Model>& belief, int horizon, const BarredActions& barred, double affordable, Sampler& random) {
     horizon_ = horizon;
     steps_ = affordable;
     if (!is_prepared_) running_down_.find(belief, random);
     is_prepared_ = true;
     belief_.draw_alike(belief, most_states, [&](const State& state) { return running_down_.all_else_of(state); }, random);
-    places_.explore(belief_, running_down_, barred, steps_, random);
+    returned_at_once_ = 0;
+    if (!places_.explore(belief_, running_down_, barred, steps_, random)) return {};
     find_ends(random);
     if (!find_wins(random)) return {};
     find_classes();
