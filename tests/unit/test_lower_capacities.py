@@ -23,6 +23,11 @@ def capacities_of(*snippets: str) -> Capacities:
         ("state.grid = vector<int>(3 * 5);", 15),
         ("state.grid = {1, 2}; state__.grid = state.grid;", 2),
         ("state.box.grid = {1, 2, 3, 4}; state.box.grid[2] = 5;", 4),
+        ("const int n = 9, m = n * n + 1; state.grid.resize(m);", 82),
+        ("vector<int> mine(100, 0); state.grid = mine;", 100),
+        ("vector<int> mine{1, 2, 3}, copy = mine; state.far = copy; state.grid = state.far;", 3),
+        ("state.grid.reserve(300); state.grid = {};", 300),
+        ("state.grid = {f(\"a,}\", '\\''), {1, 2}};", 2),
     ],
 )
 def test_literal_sizes_give_exactly_their_capacity(code, capacity):
@@ -36,6 +41,50 @@ def test_the_longest_list_counts_over_all_code():
 def test_nested_lists_give_a_room_for_each_level():
     capacities = capacities_of("state.table = {{1, 2, 3}, {4}};")
     assert (capacities.capacity("table", 0), capacities.capacity("table", 1)) == (2, 3)
+
+
+@pytest.mark.parametrize(
+    ("code", "capacity"),
+    [
+        ("state.table = {{1, {5, 6, 7}}, {2, {}}};", 3),
+        ("state.table = std::map<int, vector<int>>{{1, vector<int>(8)}};", 8),
+        ("vector<int> row(70); state.table = {{1, row}};", 70),
+    ],
+)
+def test_values_of_a_map_have_the_room_that_its_list_tells(code, capacity):
+    capacities = Capacities(variables=[("table", "std::map<int, vector<int>>")])
+    capacities.read_code([read_cpp(code)])
+    assert capacities.capacity("table", 1) == capacity
+
+
+def test_fields_have_the_room_that_lists_of_compounds_tell():
+    fields = {"Shelf": [("id", "int"), ("marks", "int[]"), ("spots", "vector<pair<int, vector<int>>>")]}
+    capacities = Capacities(variables=[("all", "Shelf[]"), ("one", "Shelf")], compounds=fields)
+    capacities.read_default("marks", "{1}")
+    capacities.read_code([read_cpp("state.all = {{1, {1, 2, 3}}}; state.one = Shelf{2, {}, {{4, {5, 6}}}};")])
+    assert (capacities.capacity("marks"), capacities.capacity("all")) == (3, 1)
+    assert (capacities.capacity("spots"), capacities.capacity("spots", 2)) == (1, 2)
+
+
+def test_nested_vectors_have_the_length_of_what_they_are_made_of():
+    capacities = capacities_of("vector<int> row(80); state.a.assign(12, row); state.b = vector<V>(3, V(4));")
+    assert (capacities.capacity("a"), capacities.capacity("a", 1)) == (12, 80)
+
+
+def test_numbers_in_code_that_sets_up_tell_how_far_a_vector_grows():
+    code = "const int n = 10; fill(state.row, n * n); fill_n(std::back_inserter(state.row), 1e6, 0.125);"
+    grown = Capacities(frozenset({"fill"}))
+    grown.read_code([read_cpp(code)], sets_up=True)
+    assert grown.capacity("row") == 100
+    later = Capacities(frozenset({"fill"}))
+    later.read_code([read_cpp(code)])
+    assert later.capacity("row") == GROWING_CAPACITY
+
+
+def test_a_map_grows_where_code_indexes_it():
+    capacities = Capacities(variables=[("count", "map<int, int>")])
+    capacities.read_code([read_cpp("for (int i = 0; i < 300; i++) state.count[i] = 1;")])
+    assert capacities.capacity("count") == 300
 
 
 def test_a_vector_that_grows_gets_room_to_grow():

@@ -2,13 +2,21 @@
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from itertools import pairwise
+from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
 
 from aos_language.cpp.keywords import STATES
-from aos_language.cpp.snippets import Access, Call, Cpp, Mention, strip_comments
+from aos_language.cpp.snippets import Access, Call, Cpp, Declaration, Mention, strip_comments
+from aos_solver.emission.lowering.other_names import (
+    GROWING,
+    SIZING,
+    aliases_of,
+    fills_what_is_unclear,
+    in_place_of_each_other,
+)
+from aos_solver.emission.lowering.type_texts import SORTED, arguments, indexed_type, normal_type
+from aos_solver.emission.lowering.written_lists import bracketed_parts, made_of, whole_number
 
 GROWING_CAPACITY = 64
 """A vector that grows by code gets this capacity, if nothing in the code tells more."""
@@ -17,51 +25,75 @@ REPORTED_CAPACITY = 1024
 """A vector that the robot's data fill gets this capacity, if the documents give it no length at the start."""
 
 _MAX_CAPACITY = 16384
+_MAX_TOLD = 1024
+"""A larger number in code that sets variables up is hardly a length."""
+
 _MAX_NESTING = 4
-_GROWING = frozenset({"emplace", "emplace_back", "insert", "merge", "push_back"})
-_SIZING = frozenset({"assign", "resize"})
+_MAPS = ("map<", "unordered_map<")
 _FILLING = frozenset({"back_inserter", "exchange", "front_inserter", "inserter", "tie"})
 """Functions of the standard library that make what they are given longer, or whose result does."""
-_NUMBER = r"\s*(\d+(?:\s*\*\s*\d+)*)\s*"  # or a product of numbers
-_LOOP_BOUND = re.compile(rf"\bfor\s*\([^;{{}}]*;[^;{{}}]*<=?{_NUMBER};")
-_CONSTRUCTED = re.compile(rf"(?:std::)?vector\s*<[^(){{}};]*>\s*\({_NUMBER}[,)]")
-_COPIED = re.compile(r"state_*\.(?:\w+\.)*(\w+)\s*;")
-_SIZED = re.compile(rf"\.\s*\w+\s*\({_NUMBER}[,)]")
-_POINTER = re.compile(r"\bvector\s*<[\w\s:<>*]*>\s*\*")
-_LOOP_COLON = re.compile(r"\s*:\s*")
-_IN_PLACE = re.compile(r"\s*([:,]|\.\s*swap\s*\()\s*(&?)\s*")
-_BEFORE_FIRST = re.compile(r"(?:(swap\s*\(\s*)|(&\s*))\Z")
-_STATEMENT = re.compile(r"[^;{}]*\Z")
-_LONGER = re.compile(r"=\s*(?:(?:std::)?vector\s*<|\{)")
-_LISTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*(?=\{)")
+_NUMBER = r"(\d+(?:\s*[*+]\s*\d+)*)"
+_LOOP_BOUND = re.compile(rf"\b(?:for\s*\([^;{{}}]*;|while\s*\()[^;{{}}]*?(?:<=?|!=)\s*{_NUMBER}\s*[;)]")
+_LENGTH = re.compile(rf"(?<![\w.]){_NUMBER}(?![\w.])")
+_NAMED = re.compile(r"\s*([A-Za-z_][\w.]*)\s*(?:[;,)}]|\Z)")
+_CALLED = re.compile(r"\.\s*\w+\s*(?=\()")
+_WHOLE = re.compile(
+    r"(?:const(?:expr)? |static )*(?:auto|int|long|short|size_t|std::size_t|unsigned(?: int)?)(?: const)?"
+)
+_Key = tuple[str, int]
+"""A name, and the level of nesting."""
+
+
+class _Scope(msgspec.Struct, frozen=True):
+    """Constants of one snippet by name, the keys of its own vectors, and how far a vector may grow in it."""
+
+    numbers: Mapping[str, str]
+    keys: Mapping[str, _Key]
+    growth: int
+
+    def number(self, text: str) -> int | None:
+        return whole_number(with_numbers(text, self.numbers))
+
+
+_NO_SCOPE = _Scope({}, {}, GROWING_CAPACITY)
 
 
 class Capacities:
     """Capacity by the name of a variable or field and by level of nesting.
 
     A vector that is only ever assigned lists and literal sizes has exactly the capacity of the longest. One
-    that grows has `GROWING_CAPACITY`, or the product of the loop bounds in the code that makes it grow. One
-    that the robot's data fill has twice the capacity it starts with, or `REPORTED_CAPACITY`. Running over is
-    a fault at run time, with the document's line.
+    that grows has `GROWING_CAPACITY`, or the product of the loop bounds in the code that makes it grow, or
+    the largest number up to `_MAX_TOLD` in code that sets variables up. One that the robot's data fill has
+    twice the capacity it starts with, or `REPORTED_CAPACITY`. Running over is a fault at run time, with the
+    document's line.
     """
 
     def __init__(
-        self, filling: frozenset[str] = frozenset(), numbers: Mapping[str, str] | None = None
+        self,
+        filling: frozenset[str] = frozenset(),
+        numbers: Mapping[str, str] | None = None,
+        variables: Iterable[tuple[str, str]] = (),
+        compounds: Mapping[str, Sequence[tuple[str, str]]] | None = None,
     ) -> None:
-        """`filling` are functions that may make what they are given longer, `numbers` constants by name."""
+        """`filling` are functions that may make what they are given longer, `numbers` constants by name.
+        Variables, and the fields of compounds, have a name and a type."""
         self._filling = filling
         self._numbers = dict(numbers or {})
-        self._constant = re.compile(rf"\b(?:{'|'.join(self._numbers)})\b") if self._numbers else None
-        self._known: dict[tuple[str, int], int] = {}
-        self._grows: dict[tuple[str, int], int] = {}
-        self._reported: set[tuple[str, int]] = set()
-        self._alike: dict[tuple[str, int], set[tuple[str, int]]] = {}
+        self._compounds = dict(compounds or {})
+        fields = [field for fields in self._compounds.values() for field in fields]
+        self._types = {name: normal_type(text) for name, text in (*fields, *variables)}
+        self._known: dict[_Key, int] = {}
+        self._grows: dict[_Key, int] = {}
+        self._reported: set[_Key] = set()
+        self._alike: dict[_Key, set[_Key]] = {}
 
     def capacity(self, name: str, level: int = 0) -> int:
         """The capacity of `name` at a level: 0 for the vector, 1 for the vectors in it."""
-        return max(map(self._own_capacity, self._alike.get((name, level), {(name, level)})))
+        alike = self._alike.get((name, level), {(name, level)})
+        told = alike & (self._known.keys() | self._grows.keys() | self._reported)
+        return max(map(self._own_capacity, told), default=GROWING_CAPACITY)
 
-    def _own_capacity(self, key: tuple[str, int]) -> int:
+    def _own_capacity(self, key: _Key) -> int:
         known = self._known.get(key, 0)
         if key in self._reported and known <= 1:  # An empty list at the start says nothing.
             return REPORTED_CAPACITY
@@ -75,179 +107,181 @@ class Capacities:
 
     def read_default(self, name: str, expression: str) -> None:
         """Takes in the default value of a variable or field."""
-        self._take_value((name, 0), strip_comments(expression).lstrip(), loops=1)
+        self._take_value((name, 0), self._types.get(name, ""), strip_comments(expression), _NO_SCOPE)
 
-    def read_code(self, snippets: Iterable[Cpp]) -> None:
-        """Takes in statements."""
+    def read_code(self, snippets: Iterable[Cpp], *, sets_up: bool = False) -> None:
+        """Takes in statements, which may be those that set the variables up."""
         for cpp in snippets:
             code = strip_comments(cpp.code)
-            loops = math.prod(_product(bound) for bound in _LOOP_BOUND.findall(self._in_numbers(code)))
-            aliases: dict[str, list[tuple[str, ...]]] = {}
-            for name, path in _aliases(cpp):
+            scope = self._scope_of(cpp, code, sets_up)
+            aliases: dict[str, list[tuple[str, ...]]] = {
+                name: [(key,)] for name, (key, _) in scope.keys.items()
+            }
+            for name, path in aliases_of(cpp):
                 aliases.setdefault(name, []).append(path)
-            for one, other in _in_place_of_each_other(cpp, code):
-                self._join(_key(one.path), _key(other.path))
+            for one, other in in_place_of_each_other(cpp, code):
+                self._join(self._key(one.path), self._key(other.path))
             filled = [argument for call in cpp.calls if self._fills(call) for argument in call.arguments]
-            is_unclear = _fills_what_is_unclear(cpp, code, frozenset(aliases))
+            is_unclear = fills_what_is_unclear(cpp, code, frozenset(aliases))
             for mention in cpp.mentions:
                 if is_unclear and mention.path[0] in STATES:
-                    self._grow_all(_key(mention.path), loops)
+                    self._grow_all(self._key(mention.path), scope)
                 is_filled = any(argument.start <= mention.extent.start < argument.end for argument in filled)
                 for start in aliases.get(mention.path[0], [mention.path[:1]]):
                     path = (*start, *mention.path[1:])
-                    self._take_mention(msgspec.structs.replace(mention, path=path), code, loops)
+                    self._take_mention(msgspec.structs.replace(mention, path=path), code, scope)
                     if is_filled:
-                        self._grow(_key(path), loops)
+                        self._grow(self._key(path), scope)
 
-    def _join(self, one: tuple[str, int], other: tuple[str, int]) -> None:
+    def _scope_of(self, cpp: Cpp, code: str, sets_up: bool) -> _Scope:
+        """Reads the constants and the vectors that a snippet declares."""
+        numbers = dict(self._numbers)
+        changed = {m.path[0] for m in cpp.mentions if m.access not in (Access.READ, Access.CALL)}
+        for one in cpp.declarations:
+            if one.initial is not None and _WHOLE.fullmatch(one.type) and one.name not in changed:
+                written = with_numbers(code[one.initial.start : one.initial.end].strip("(){}"), numbers)
+                if (number := whole_number(written)) is not None:
+                    numbers[one.name] = str(number)
+        replaced = with_numbers(code, numbers)
+        told = [_known_number(text) for text in _LENGTH.findall(replaced)] if sets_up else []
+        growth = math.prod(max(1, _known_number(bound)) for bound in _LOOP_BOUND.findall(replaced))
+        growth = max(GROWING_CAPACITY, growth, *(number for number in told if number <= _MAX_TOLD))
+        keys: dict[str, _Key] = {}
+        scope = _Scope(numbers, keys, growth)
+        for one in cpp.declarations:
+            if (key := self._own_vector(one, code, scope)) is not None:
+                keys[one.name] = key
+        return scope
+
+    def _own_vector(self, one: Declaration, code: str, scope: _Scope) -> _Key | None:
+        """Takes in a vector that code declares; its key, or None for what is none."""
+        text = code[one.initial.start : one.initial.end] if one.initial is not None else ""
+        kind = normal_type(one.type.removeprefix("const "))
+        if kind == "auto" and (made := made_of(text)) is not None and made[0] == "vector":
+            kind = "vector<>"
+        if not (kind.startswith("vector<") and kind.endswith(">")):
+            return None
+        key = (f"{one.name} {len(self._types)}", 0)
+        self._types[key[0]] = kind
+        self._know(key, 0)
+        if text:
+            self._take_value(key, kind, "vector" + text if text.startswith("(") else text, scope)
+        return key
+
+    def _join(self, one: _Key, other: _Key) -> None:
         """Notes that two vectors, and those in them, are of one type, since code takes either."""
         for level in range(_MAX_NESTING):
             pair = ((one[0], one[1] + level), (other[0], other[1] + level))
             joined = {key for part in pair for key in self._alike.get(part, {part})}
             self._alike.update(dict.fromkeys(joined, joined))
 
-    def _in_numbers(self, code: str) -> str:
-        """The code with the constants' values in place of their names."""
-        return self._constant.sub(lambda name: self._numbers[name[0]], code) if self._constant else code
-
     def _fills(self, call: Call) -> bool:
         if call.name[-1:] and call.name[-1] in _FILLING:
             return True
         return len(call.name) == 1 and call.name[0] in self._filling
 
-    def _take_mention(self, mention: Mention, code: str, loops: int) -> None:
-        key = _key(mention.path)
-        rest = self._in_numbers(code[mention.extent.end :].lstrip())
+    def _take_mention(self, mention: Mention, code: str, scope: _Scope) -> None:
+        key = self._key(mention.path)
+        rest = code[mention.extent.end :].lstrip()
+        if mention.access is not Access.READ and self._kind((key[0], key[1] - 1)).startswith(_MAPS):
+            self._grow((key[0], key[1] - 1), scope)
         if mention.access is Access.WRITE and rest.startswith("="):
-            self._take_value(key, rest[1:].lstrip(), loops)
-        elif mention.method in _GROWING:
-            self._grow(key, loops)
-        elif mention.method in _SIZING:
-            if (sized := _SIZED.match(rest)) is not None:
-                self._know(key, _product(sized[1]))
+            self._take_value(key, self._kind(key), rest[1:], scope)
+        elif mention.method in GROWING:
+            self._grow(key, scope)
+        elif mention.method in SIZING:
+            called = _CALLED.match(rest)
+            parts = bracketed_parts(rest[called.end() :]) if called is not None else []
+            if parts and parts[0].lstrip().startswith("{"):
+                self._take_value(key, self._kind(key), parts[0].lstrip(), scope)
             else:
-                self._grow(key, loops)
+                self._take_length(key, parts, scope)
 
-    def _take_value(self, key: tuple[str, int], value: str, loops: int) -> None:
-        if (constructed := _CONSTRUCTED.match(value)) is not None:
-            self._know(key, _product(constructed[1]))
-            return
-        if (listed := _LISTED.match(value)) is not None:
-            value = value[listed.end() :]
-        if (copied := _COPIED.match(value)) is not None and copied[1] == key[0]:
-            return
-        if value.startswith("{"):
-            for depth, count in enumerate(_list_lengths(value)):
-                self._know((key[0], key[1] + depth), count)
+    def _take_value(self, key: _Key, kind: str, value: str, scope: _Scope) -> None:
+        """Takes in a value of a type, nothing where it is unknown, which a text begins with."""
+        made, named = made_of(value), _NAMED.match(value)
+        if made is not None and made[1] == "{":
+            self._take_list(key, kind, made[2], scope)
+        elif made is not None and made[0] == "vector":
+            self._take_length(key, made[2], scope)
+        elif named is not None and (source := self._named_key(named[1], scope)) is not None:
+            self._join(key, source)
         else:
-            self._grow(key, loops)
+            self._grow(key, scope)
 
-    def _know(self, key: tuple[str, int], size: int) -> None:
+    def _take_length(self, key: _Key, parts: Sequence[str], scope: _Scope) -> None:
+        """Takes in a length, and what each element is: `(3)` and `(3, vector<int>(4))`."""
+        length = scope.number(parts[0]) if parts else 0
+        if length is None:
+            self._grow(key, scope)
+            return
+        self._know(key, length)
+        for part in parts[1:2]:
+            self._take_part((key[0], key[1] + 1), indexed_type(self._kind(key)), part, scope)
+
+    def _take_list(self, key: _Key, kind: str, parts: Sequence[str], scope: _Scope) -> None:
+        """Takes in a list: for a vector its elements, for a map pairs, for a compound its fields."""
+        below = (key[0], key[1] + 1)
+        listed = SORTED.fullmatch(kind)
+        if kind in self._compounds:
+            inner = [((name, 0), normal_type(text)) for name, text in self._compounds[kind]]
+        elif listed is not None and listed[1] == "pair":
+            inner = [(below, text) for text in arguments(listed[2])]
+        elif listed is not None and listed[1].endswith("map"):
+            self._know(key, len(parts))
+            inner = [(key, f"pair<{listed[2]}>")] * len(parts)
+        else:
+            self._know(key, len(parts))
+            inner = [(below, indexed_type(kind))] * len(parts)
+        for (place, type_), part in zip(inner, parts, strict=False):
+            self._take_part(place, type_, part, scope)
+
+    def _take_part(self, key: _Key, kind: str, text: str, scope: _Scope) -> None:
+        """Takes in an element that is a list or a vector itself."""
+        made, named = made_of(text), _NAMED.fullmatch(text)
+        is_own = named is not None and named[1] in scope.keys
+        if is_own or (made is not None and (made[1] == "{" or made[0] == "vector")):
+            self._take_value(key, kind, text, scope)
+
+    def _named_key(self, name: str, scope: _Scope) -> _Key | None:
+        """The key of a vector of the code's own, or of a part of a state."""
+        path = tuple(name.split("."))
+        return self._key(path) if path[0] in STATES and path[1:] else scope.keys.get(name)
+
+    def _key(self, path: tuple[str, ...]) -> _Key:
+        """The name of a variable or field at the end of a path, and the level of what is indexed there."""
+        is_inner = [
+            part == "[]" or (part in ("first", "second") and part not in self._types) for part in path
+        ]
+        last = max((at for at, inner in enumerate(is_inner) if not inner), default=0)
+        return path[last], len(path) - last - 1
+
+    def _kind(self, key: _Key) -> str:
+        """The type at a level; nothing where it is unknown."""
+        kind = self._types.get(key[0], "") if key[1] >= 0 else ""
+        for _ in range(key[1]):
+            kind = indexed_type(kind)
+        return kind
+
+    def _know(self, key: _Key, size: int) -> None:
         self._known[key] = max(self._known.get(key, 1), size)
 
-    def _grow_all(self, key: tuple[str, int], loops: int) -> None:
+    def _grow_all(self, key: _Key, scope: _Scope) -> None:
         """Notes that a vector or what it holds may grow."""
         for level in range(key[1], _MAX_NESTING):
-            self._grow((key[0], level), loops)
+            self._grow((key[0], level), scope)
 
-    def _grow(self, key: tuple[str, int], loops: int) -> None:
-        self._grows[key] = max(self._grows.get(key, GROWING_CAPACITY), loops)
-
-
-def _product(text: str) -> int:
-    return math.prod(int(factor) for factor in text.split("*"))
+    def _grow(self, key: _Key, scope: _Scope) -> None:
+        self._grows[key] = max(self._grows.get(key, GROWING_CAPACITY), scope.growth)
 
 
-def _aliases(cpp: Cpp) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """The references that a snippet declares, and the paths that they stand for; and the copies by `auto`,
-    which have the capacity of what they are made of."""
-    for declaration in cpp.declarations:
-        is_copy = declaration.type == "auto"
-        if not is_copy and not declaration.type.endswith("&"):
-            continue
-        initial = declaration.initial
-        loop = _LOOP_COLON.match(cpp.code, declaration.extent.end) if initial is None else None
-        for mention in cpp.mentions:
-            at = mention.extent.start
-            if is_copy and mention.method:
-                continue
-            if initial is not None and (
-                initial.start <= at < initial.end if is_copy else at == initial.start
-            ):
-                yield declaration.name, mention.path
-            elif loop is not None and at == loop.end():
-                yield declaration.name, (*mention.path, "[]")
+def with_numbers(code: str, numbers: Mapping[str, str]) -> str:
+    """The code with constants' values in place of their names."""
+    if not numbers:
+        return code
+    names = re.compile(rf"(?<![\w.])(?:state_*\.)?({'|'.join(map(re.escape, numbers))})(?![\w.\[(])")
+    return names.sub(lambda name: numbers[name[1]], code)
 
 
-def _fills_what_is_unclear(cpp: Cpp, code: str, known: frozenset[str]) -> bool:
-    """Returns whether code makes something longer through a reference, a pointer or a call's result.
-
-    `known` are names whose places in the state are told.
-    """
-    types = {declaration.name: declaration.type for declaration in cpp.declarations}
-    for mention in cpp.mentions:
-        name, *rest = mention.path
-        kind = types.get(name, "")
-        is_iterator = kind == "auto" and rest[:1] in (["first"], ["second"])
-        is_pointer = name not in STATES and code.startswith("->", mention.extent.end)
-        is_unclear = kind.endswith(("&", "*")) or is_iterator
-        if not is_pointer and (name in known or not is_unclear):
-            continue
-        is_set = mention.access is Access.WRITE and _LONGER.match(code[mention.extent.end :].lstrip())
-        if mention.method in _GROWING | _SIZING or is_set:
-            return True
-    return any(call.name in {(method,) for method in _GROWING} for call in cpp.calls)
-
-
-def _in_place_of_each_other(cpp: Cpp, code: str) -> Iterator[tuple[Mention, Mention]]:
-    """Pairs as in `c ? state.a : state.b`, `{&state.a, &state.b}`, `swap(state.a, state.b)`, and
-    `state.a.swap(state.b)`; and what pointers to vectors are set to."""
-    if _POINTER.search(code):
-        yield from pairwise(m for m in cpp.mentions if m.path[0] in STATES and m.access is Access.BIND)
-    for one, other in pairwise(cpp.mentions):
-        between = _IN_PLACE.fullmatch(code, one.extent.end, other.extent.start)
-        if between is None:
-            continue
-        statement = _STATEMENT.search(code, 0, one.extent.start)
-        before = _BEFORE_FIRST.search(code, 0, one.extent.start)
-        is_choice = between[1] == ":" and statement is not None and "?" in statement[0]
-        is_listed = between[1] == "," and before is not None and bool(before[2]) == bool(between[2])
-        if is_choice or is_listed or between[1][0] == ".":
-            yield one, other
-
-
-def _key(path: tuple[str, ...]) -> tuple[str, int]:
-    """The name of a variable or field at the end of a path, and the level of what is indexed there."""
-    last = max(index for index, part in enumerate(path) if part != "[]")
-    return path[last], len(path) - last - 1
-
-
-def _list_lengths(text: str) -> list[int]:
-    """The most elements at each depth of a braced list, which `text` begins with."""
-    lengths: list[int] = []
-    open_lists: list[int] = []
-    parentheses = 0
-    is_inside_element = False
-    for character in text:
-        if character in "([":
-            parentheses += 1
-        elif character in ")]":
-            parentheses -= 1
-        if parentheses == 0 and character == "{":
-            if open_lists and not is_inside_element:
-                open_lists[-1] += 1
-            open_lists.append(0)
-            is_inside_element = False
-        elif parentheses == 0 and character == "}":
-            depth, count = len(open_lists) - 1, open_lists.pop()
-            lengths += [0] * (depth + 1 - len(lengths))
-            lengths[depth] = max(lengths[depth], count)
-            is_inside_element = True
-            if not open_lists:
-                break
-        elif parentheses == 0 and character == ",":
-            is_inside_element = False
-        elif not character.isspace() and not is_inside_element:
-            open_lists[-1] += 1
-            is_inside_element = True
-    return lengths
+def _known_number(text: str) -> int:
+    return whole_number(text) or 0

@@ -1,5 +1,6 @@
 """Types and variables of the environment."""
 
+import re
 from collections.abc import Iterable
 
 from aos_language.cpp.snippets import read_cpp
@@ -8,18 +9,25 @@ from aos_language.findings import Findings
 from aos_language.local_types import reported_variables
 from aos_protocol.documents import Environment, Project, StateVariable
 from aos_solver.emission.lowering.capacities import Capacities
-from aos_solver.emission.lowering.code import Pieces, sections_of
+from aos_solver.emission.lowering.code import BELIEF, Pieces, sections_of
 from aos_solver.emission.lowering.types import Types, ordered_compounds
 from aos_solver.emission.lowering.writes import Changes, changes_of, drawing_defaults
 from aos_solver.emission.program import Compound, Field, ObjectList, ParameterValues, Variable
 from aos_solver.emission.rewriting.rewrite import Rewriting
+
+_SET_NUMBER = re.compile(r"(?:state\.\w+\s*=\s*)?(\d+)\s*;?")
 
 
 def capacities_of(project: Project) -> Capacities:
     """The capacity of every vector, from all code of the project."""
     environment = project.environment
     shared = shared_code_of(environment)
-    capacities = Capacities(shared.changing, shared.whole_numbers)
+    capacities = Capacities(
+        shared.changing,
+        shared.whole_numbers | _constant_numbers(project),
+        [(variable.name, _type_of(variable)) for variable in environment.variables],
+        {one.name: [(field.name, field.type) for field in one.fields] for one in environment.compounds},
+    )
     capacities.read_code([shared.cpp])
     for compound in environment.compounds:
         for field in compound.fields:
@@ -29,13 +37,29 @@ def capacities_of(project: Project) -> Capacities:
         if variable.default_value is not None:
             capacities.read_default(variable.name, variable.default_value.code)
         if variable.default_code is not None:
-            capacities.read_code([read_cpp(variable.default_code.code)])
+            capacities.read_code([read_cpp(variable.default_code.code)], sets_up=True)
     for skill in project.skills:
         for name in reported_variables(skill.mapping, environment):
             capacities.fill_by_report(name)
-    for _, assignments in sections_of(project):
-        capacities.read_code(cpp for _, cpp in snippets_of(assignments))
+    for phase, assignments in sections_of(project):
+        capacities.read_code((cpp for _, cpp in snippets_of(assignments)), sets_up=phase is BELIEF)
     return capacities
+
+
+def _type_of(variable: StateVariable) -> str:
+    return f"{variable.type}[{variable.index_enum}]" if variable.is_array else variable.type
+
+
+def _constant_numbers(project: Project) -> dict[str, str]:
+    """The variables that are whole numbers and that nothing but their default sets."""
+    changed = changes_of(project).variables
+    numbers: dict[str, str] = {}
+    for variable in project.environment.variables:
+        default = variable.default_value or variable.default_code
+        if default is not None and variable.name not in changed and not variable.is_mission_parameter:
+            number = _SET_NUMBER.fullmatch(default.code.strip())
+            numbers |= {variable.name: number[1]} if number is not None else {}
+    return numbers
 
 
 def member_names(project: Project) -> frozenset[str]:
@@ -87,8 +111,7 @@ def lower_variables(
             hint = "Actions are the same in all states; let an initial belief draw another variable"
             findings.error("AOS124", message, variable.span, hint)
         axes = tuple(types.axis(key, variable.span) for key in variable.key_types)
-        array = f"[{variable.index_enum}]" if variable.is_array else ""
-        stored = types.stored(f"{variable.type}{array}", variable.name, variable.span)
+        stored = types.stored(_type_of(variable), variable.name, variable.span)
         if axes:
             stored = f"aos::Table<{stored}, {', '.join(axis.type for axis in axes)}>"
         value, code = variable.default_value, variable.default_code

@@ -7,6 +7,14 @@ from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import CompoundType, EnumType
 from aos_solver.emission.lowering.capacities import GROWING_CAPACITY, Capacities
+from aos_solver.emission.lowering.type_texts import (
+    ARRAY,
+    OVER_ENUM,
+    SORTED,
+    arguments,
+    element_type,
+    normal_type,
+)
 from aos_solver.emission.program import Axis, Enum
 
 _PLAIN = frozenset({
@@ -16,8 +24,6 @@ _PLAIN = frozenset({
     "unsigned long int", "unsigned long long", "unsigned long long int", "unsigned short",
     "unsigned short int",
 })  # fmt: skip
-_OVER_ENUM = re.compile(r"(.+)\[([A-Za-z_]\w*)\]")
-_SORTED = re.compile(r"(pair(?=<.+,)|(?:unordered_)?(?:map(?=<.+,)|set))<(.+)>")
 _RANGE = re.compile(r"\(\s*(-?\d+)\s*,\s*(-?\d+)\s*,\s*([1-9]\d*)\s*\)")
 
 
@@ -72,11 +78,11 @@ class Types:
 
     def plain(self, text: str, span: Span) -> str:
         """The type of a parameter or a temporary variable, which is not bound to fixed storage."""
-        text = _normal(text)
-        inner = _element_type(text)
+        text = normal_type(text)
+        inner = element_type(text)
         if inner is not None:
             return f"std::vector<{self.plain(inner, span)}>"
-        if (over := _OVER_ENUM.fullmatch(text)) is not None:
+        if (over := OVER_ENUM.fullmatch(text)) is not None:
             return self._over_enum(over[2], self.plain(over[1], span), span)
         if text == "string":
             return "std::string"
@@ -100,19 +106,19 @@ class Types:
         return Axis(f"aos::RangeAxis<{', '.join(match.groups())}>", "int")
 
     def _stored(self, text: str, name: str, span: Span, level: int) -> str:
-        text = _normal(text)
-        inner = _element_type(text)
+        text = normal_type(text)
+        inner = element_type(text)
         if inner is not None:
             capacity = self._capacities.capacity(name, level)
             return f"aos::Vector<{self._stored(inner, name, span, level + 1)}, {capacity}>"
-        if (over := _OVER_ENUM.fullmatch(text)) is not None:
+        if (over := OVER_ENUM.fullmatch(text)) is not None:
             return self._over_enum(over[2], self._stored(over[1], name, span, level + 1), span)
-        array = re.fullmatch(r"array<(.+),\s*(\d+)\s*>", text)
-        if array is not None:
+        array = ARRAY.fullmatch(text)
+        if array is not None and array[2].isdecimal():
             return f"std::array<{self._stored(array[1], name, span, level + 1)}, {array[2]}>"
-        if (sorted_type := _SORTED.fullmatch(text)) is not None:
+        if (sorted_type := SORTED.fullmatch(text)) is not None:
             return self._sorted(
-                sorted_type[1].removeprefix("unordered_"), _arguments(sorted_type[2]), name, span, level
+                sorted_type[1].removeprefix("unordered_"), arguments(sorted_type[2]), name, span, level
             )
         if text == "string":
             return "aos::Text"
@@ -125,13 +131,13 @@ class Types:
             self._unknown(text, span)
         return "int"
 
-    def _sorted(self, kind: str, arguments: list[str], name: str, span: Span, level: int) -> str:
+    def _sorted(self, kind: str, inner: list[str], name: str, span: Span, level: int) -> str:
         """A pair; or a set or a map, of as many keys as an enum has values, else as a vector elements."""
-        stored = [self._stored(argument, name, span, level + 1) for argument in arguments[:2]]
+        stored = [self._stored(argument, name, span, level + 1) for argument in inner[:2]]
         element = f"aos::Pair<{', '.join(stored)}>" if kind in ("pair", "map") else stored[0]
         if kind == "pair":
             return element
-        keys = self._enums.get(arguments[0])
+        keys = self._enums.get(inner[0])
         # Code that indexes a map makes it grow.
         capacity = max(self._capacities.capacity(name, level), GROWING_CAPACITY if kind == "map" else 0)
         capacity = len(keys.values) if keys is not None else capacity
@@ -152,29 +158,3 @@ class Types:
         known = ", ".join(sorted(self._named))
         hint = f"The types are bool, int, float, double, string, anyValue{', ' + known if known else ''}"
         self._findings.error("AOS110", f"unknown type `{text}`", span, hint)
-
-
-def _normal(text: str) -> str:
-    text = " ".join(text.replace("std::", "").split())
-    return re.sub(r"\s*([<>,\[\]])\s*", r"\1", text)
-
-
-def _arguments(text: str) -> list[str]:
-    """The arguments of a template, which are divided by commas outside inner brackets."""
-    arguments, depth = [""], 0
-    for character in text:
-        depth += (character == "<") - (character == ">")
-        if character == "," and depth == 0:
-            arguments.append("")
-        else:
-            arguments[-1] += character
-    return arguments
-
-
-def _element_type(text: str) -> str | None:
-    """The element type of `T[]` and `vector<T>`; None for other types."""
-    if text.endswith("[]"):
-        return text[:-2]
-    if text.startswith("vector<") and text.endswith(">"):
-        return text[len("vector<") : -1]
-    return None

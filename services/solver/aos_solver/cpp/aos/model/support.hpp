@@ -34,7 +34,8 @@ void no_such_key(std::size_t size) {
 }
 void over_capacity(std::size_t size, std::size_t max) {
   const std::string holds = "; its state variable holds " + std::to_string(max);
-  throw ModelFault{"AOS215", "a vector of " + std::to_string(size) + " elements" + holds};
+  const std::string hint = ". The default of the variable may say how many: `state.NAME.reserve(500);`";
+  throw ModelFault{"AOS215", "a vector of " + std::to_string(size) + " elements" + holds + hint};
 }
 void wrong_length(std::size_t given, std::size_t size) {
   throw ModelFault{"AOS215", "a list of " + std::to_string(given) + " for an array over an enum of " + std::to_string(size) + " values"};
