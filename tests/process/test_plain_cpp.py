@@ -14,6 +14,7 @@ enum_members: Missed, Observed
 
 define_type: Parameters
 variable: int weight 2
+variable: int marks [] {1}
 
 state_variable: Chosen colour
 code:
@@ -193,6 +194,14 @@ CODE = {
         "__reward += 10 * by[4]->front() + none->size() + mine->size() + fixed[0]->size();"
         "state__.other = state.other; state__.last = state.last;",
         6 + 90 + 9,
+    ),
+    "within": (
+        "const int* most = nullptr; vector<int>* marks = NULL; for (auto box : state__.ParametersObjects) {"
+        "if (!most || box->weight > *most) most = &box->weight; if (box->weight == 2) marks = &box->marks; }"
+        "const vector<int>* first = nullptr; first = &state.ParametersObjects[0]->marks;"
+        "marks->push_back(amount); __reward = *most + 10 * state__.third.marks.size() + first->front();"
+        "state__.third = state.third;",
+        2 + 20 + 1,
     ),
     "seen": (
         "const vector<int>& row = state__.row; state__.row[0] = 8; const string& note = state__.note;"

@@ -9,7 +9,16 @@ from collections.abc import Iterator
 
 from aos_language.cpp.bound import path_bound
 from aos_language.cpp.keywords import DRAW_SOURCES, STATES
-from aos_language.cpp.snippets import Access, Call, Cpp, Declaration, DeclarationKind, blanked, strip_comments
+from aos_language.cpp.snippets import (
+    Access,
+    Call,
+    Cpp,
+    Declaration,
+    DeclarationKind,
+    Mention,
+    blanked,
+    strip_comments,
+)
 
 _CONTAINER_REFERENCE = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map|set|pair)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"
@@ -103,7 +112,7 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
 def _held_edits(cpp: Cpp) -> Iterator[tuple[int, int, str]]:
     """Edits of pointers whose type is not that of what they start with, and of what lambdas return."""
     of_state = [mention for mention in cpp.mentions if mention.path[0] in STATES]
-    bound = [mention for mention in of_state if mention.access is Access.BIND]
+    bound = {m.extent.start: place for m in cpp.mentions if (place := _place_bound(cpp, m))}
     code = blanked(strip_comments(cpp.code), cpp.literals)
     for held in _HELD.finditer(code) if of_state else ():
         if held[1]:
@@ -114,10 +123,22 @@ def _held_edits(cpp: Cpp) -> Iterator[tuple[int, int, str]]:
             continue
         if _starts_with_one(cpp, declared) and not code[held.end() : declared.extent.start].strip():
             continue
-        parts = sorted(bound, key=lambda mention: mention.extent.start < held.start())
-        paths = dict.fromkeys(".".join(part.path).replace(".[]", "[{}]") for part in parts)
-        types = "".join(f", decltype(({path}))" for path in paths if "Objects" not in path)
+        starts = sorted(bound, key=lambda start: start < held.start())
+        types = "".join(f", decltype(({place}))" for place in dict.fromkeys(bound[at] for at in starts))
         yield *held.span(2), f"aos::Held<{held[2]}{types}>"
+
+
+def _place_bound(cpp: Cpp, mention: Mention) -> str:
+    """Returns the part of the state that code may point to by a mention, also by the object of a loop."""
+    if mention.access is not Access.BIND:
+        return ""
+    path = mention.path
+    if path[0] not in STATES:
+        own = next((one for one in cpp.declarations if one.name == path[0]), None)
+        objects = path_bound(cpp, own) if own is not None and own.initial is None else ()
+        path = (*objects, "[]", *path[1:]) if objects else ()
+    place = ".".join(path).replace(".[]", "[{}]").replace("Objects[{}].", "Objects()[0]->")
+    return "" if place.endswith(("Objects", "Objects[{}]")) else place
 
 
 def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
