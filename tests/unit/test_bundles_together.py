@@ -1,3 +1,4 @@
+import json
 from pathlib import Path
 
 import pytest
@@ -54,6 +55,28 @@ def test_a_bound_path_that_no_skill_calls_is_told_with_the_one_that_is_meant(tmp
     told = aos("lint", deploy, "--no-compile").stdout
     assert "yard.yaml:8:3: warning[AOS110]: no skill calls /psuh. Did you mean `/push`?" in told
     assert "/later" not in told, "a skill may come"
+
+
+def test_mistakes_in_what_a_deploy_file_sets_for_its_documents_are_told_by_lint(tmp_path):
+    bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
+    deploy = tmp_path / "yard.yaml"
+    mission = "mission:\n  set: {laps: 3}\n  constraints: [{never: opne, probability: 0.1}]\n"
+    deploy.write_text(f"aos: 1\nrobot: yard\nbundles: [yard]\n{mission}")
+    told = aos("lint", deploy, "--no-compile", "--json")
+    places = {(one["code"], one["span"]["line"]) for one in json.loads(told.stdout)["diagnostics"]}
+    assert (told.exit_code, places) == (1, {("AOS146", 5), ("AOS110", 6), ("AOS139", 1)})
+
+
+@pytest.mark.parametrize("form", ["json", "sarif"])
+def test_mistakes_of_a_deploy_file_are_data_where_data_are_asked_for(tmp_path, form):
+    bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
+    deploy = tmp_path / "yard.yaml"
+    deploy.write_text("aos: 1\nrobot: yard\nbundles: [yard]\nmisson: {}\n")
+    told = aos("lint", deploy, "--no-compile", "--format", form)
+    assert told.exit_code == 1
+    data = json.loads(told.stdout)
+    found = data["diagnostics"] if form == "json" else data["runs"][0]["results"]
+    assert "misson" in json.dumps(found)
 
 
 def test_a_folder_with_one_deploy_file_stands_for_it(tmp_path):

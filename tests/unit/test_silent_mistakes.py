@@ -118,6 +118,19 @@ def test_a_missing_semicolon_before_a_copy_of_the_state_is_told_once():
     assert only.hint == "Is a semicolon missing at the end of the line above?"
 
 
+@pytest.mark.parametrize(
+    ("code", "hint"),
+    [
+        ("for (int each in state.walls) __reward += each;", "A loop over a list is `for (auto x : list)`"),
+        ("for (int i = 0, i < 3, i++) __reward += i;", "Semicolons divide the parts of a `for`"),
+        ("__reward := 3;", "To set a variable, write `=`"),
+    ],
+)
+def test_words_of_other_languages_are_told_with_those_of_cpp(code, hint):
+    told = [one for one in found(skill=skill_after(code)) if one.code == "AOS108"]
+    assert (told[0].hint, told[0].span.line) == (hint, 9)
+
+
 def test_a_real_number_that_rounding_makes_miss_a_decimal_is_told():
     changed = ENVIRONMENT.replace(
         "x 0\n", "x 0\nvariable: float width\nvariable: double far\nvariable: double at 0.3\n"

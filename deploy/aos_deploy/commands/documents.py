@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -11,6 +11,7 @@ import typer
 
 from aos_deploy.bundles.files import deployment_at, planned_of, project_at, refusal, with_mission
 from aos_deploy.bundles.sarif import sarif_log
+from aos_deploy.deployment.reading import Deployment
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments
@@ -69,7 +70,14 @@ def lint(
     of the environment do, and mistakes in its C++ are told at their place in the documents; the built model
     is kept for later. Exit code 0: clean, or warnings only. 1: errors.
     """
-    files, remarks = _files_of([*(also or ()), path])
+    form = Format.JSON if as_json else form
+    try:
+        files, remarks = _files_of([*(also or ()), path])
+    except AosError as error:
+        if form is Format.TEXT or not error.diagnostics:
+            raise  # Else the findings of a deploy file are data, as those of documents are.
+        _print_data(form, path, error.diagnostics, "")
+        raise typer.Exit(ExitCode.DOCUMENTS_WRONG) from None
     loaded = load_files(files, name=path.name or str(path), remarks=remarks)
     found = loaded.diagnostics
     if compiles and loaded.project is not None:
@@ -83,22 +91,12 @@ def lint(
         told = {(finding.span.file, finding.span.line) for finding in found if finding.is_error}
         more = _compiler_errors(files, loaded.draft)
         found = (*found, *(error for error in more if (error.span.file, error.span.line) not in told))
-    found = (*told_once(found), *_bound_in_vain(path, loaded.project or loaded.draft))
-    counts = Counter(diagnostic.severity for diagnostic in found)
-    if as_json or form is Format.JSON:
-        print_json(
-            {
-                "bundle": str(path),
-                "errors": counts[Severity.ERROR],
-                "warnings": counts[Severity.WARNING],
-                "digest": loaded.digest,
-                "diagnostics": found,
-            }
-        )
-    elif form is Format.SARIF:
-        print_json(sarif_log(found, folder=str(path), version=__version__))
+    found = (*told_once(found), *_of_deploy_file(path, loaded.project, loaded.draft))
+    if form is not Format.TEXT:
+        _print_data(form, path, found, loaded.digest)
     else:
         print_diagnostics(found)
+        counts = Counter(diagnostic.severity for diagnostic in found)
         errors, warnings = counts[Severity.ERROR], counts[Severity.WARNING]
         typer.echo(f"{path}: {count(errors, 'error')}, {count(warnings, 'warning')}")
         if not also and any(diagnostic.code == "AOS115" for diagnostic in found):
@@ -118,11 +116,35 @@ def _files_of(bundles: Iterable[Path]) -> tuple[dict[str, bytes], list[Diagnosti
     return files, remarks
 
 
-def _bound_in_vain(path: Path, project: Project | None) -> tuple[Diagnostic, ...]:
-    """The paths of a deploy file's `bind:` that no skill calls, and that are nearly those that one calls."""
+def _print_data(form: Format, path: Path, found: Sequence[Diagnostic], digest: str) -> None:
+    """Prints findings as data; the digest is that of the documents, nothing where none were read."""
+    if form is Format.SARIF:
+        print_json(sarif_log(found, folder=str(path), version=__version__))
+        return
+    counts = Counter(diagnostic.severity for diagnostic in found)
+    errors, warnings = counts[Severity.ERROR], counts[Severity.WARNING]
+    told = {"bundle": str(path), "errors": errors, "warnings": warnings, "digest": digest}
+    print_json(told | {"diagnostics": found})
+
+
+def _of_deploy_file(path: Path, project: Project | None, draft: Project | None) -> tuple[Diagnostic, ...]:
+    """Returns what is wrong with a deploy file in the light of its documents; nothing for a bundle."""
     deployment = deployment_at(path)
-    if deployment is None or project is None:
+    read = project or draft
+    if deployment is None or read is None:
         return ()
+    found = _bound_in_vain(deployment, read)
+    if project is None:
+        return found
+    try:
+        with_mission(project, deployment.constraints, deployment.mission_values, [deployment.path])
+    except DeployError as error:
+        return (*found, *error.diagnostics)
+    return found
+
+
+def _bound_in_vain(deployment: Deployment, project: Project) -> tuple[Diagnostic, ...]:
+    """The paths of a deploy file's `bind:` that no skill calls, and that are nearly those that one calls."""
     called = {skill.mapping.activation.path for skill in project.skills}
     bound = {bind for plan in deployment.adapters for bind in plan.bind}
     text, name = deployment.path.read_bytes(), str(from_here(deployment.path))

@@ -1,9 +1,18 @@
 """Messages for places where a snippet is no C++."""
 
+import re
+
 import tree_sitter
 
 from aos_language.cpp.nodes import text_of
 from aos_protocol.spelling import nearest
+
+_OTHER_LANGUAGES = (
+    (re.compile(r"for\b[^;:]*\bin\b"), "A loop over a list is `for (auto x : list)`"),
+    (re.compile(r"for\s*\([^;:()]*,"), "Semicolons divide the parts of a `for`"),
+    (re.compile(r":="), "To set a variable, write `=`"),
+)
+"""Words of other languages, and what C++ says instead."""
 
 
 def unexpected(node: tree_sitter.Node) -> tuple[str, str]:
@@ -14,6 +23,8 @@ def unexpected(node: tree_sitter.Node) -> tuple[str, str]:
     is_behind = before and before.type not in ("{", "}", ";") and before.end_point[0] < node.start_point[0]
     line = "this line" if is_cut else "the line above" if is_behind else ""
     hint = f"Is a semicolon missing at the end of {line}?" if line else ""
+    source = text_of(node) if after is None else text_of(node) + text_of(after)[:1]
+    hint = next((told for found, told in _OTHER_LANGUAGES if found.match(source.lstrip())), hint)
     return f"unexpected {text[0][:40]!r}", hint
 
 
