@@ -104,13 +104,16 @@ async def test_a_router_that_dies_is_started_again_and_all_find_back_to_it(syste
 
 async def test_a_frozen_router_is_killed_and_those_behind_it_are_not(system: System):
     services = (small("solver", is_restarted=True), small("registry", is_restarted=True))
-    async with asyncio.timeout(HANG_S), system.up(*services) as supervisor:
+    robot = command("python", "small_command.py", is_restarted=True)
+    async with asyncio.timeout(HANG_S), system.up(robot, *services) as supervisor:
         await supervisor.until_ready()
+        await system.until("robot", "ready")
         before = supervisor.pids
         os.kill(before["router"], signal.SIGSTOP)
         await system.until("router", "frozen")
         for name in ("router", "solver", "registry"):
             await system.until(name, "ready", times=2)
+        assert not system.order("silent"), "a program was blamed for its router"
         assert [end.name for end in system.ends] == ["router"]
         assert {name for name, pid in supervisor.pids.items() if before[name] != pid} == {"router"}
 

@@ -20,6 +20,20 @@ def test_what_a_policy_never_chooses_has_a_dash_for_its_value(capsys):
     assert "wait" in table
 
 
+@pytest.mark.parametrize(("number", "shown"), [(13, 13), (14, 12), (389, 12)])
+def test_of_many_actions_the_best_are_shown_and_the_others_counted(number, shown, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+    values = [ActionValue(f"go(to=place_{place})", -place, 10, 0.1) for place in range(number)]
+    print_values(list(reversed(values)), 30, "", shows_all=False)
+    told = capsys.readouterr().out
+    rows = [line.split()[1] for line in told.splitlines() if "go(" in line]
+    assert rows == [value.action for value in values[:shown]]
+    line = f"{number - 12} more actions, worth -12.000 at most; `--all` and `--json` have them"
+    assert (line in told) == (number > shown)
+    print_values(values, 30, "")
+    assert capsys.readouterr().out.count("go(") == number
+
+
 def test_what_is_proven_of_values_is_rounded_outwards(capsys):
     values = [
         ActionValue("open", 2.5, 10, 0.1, -1.00004, 3.00004),

@@ -3,7 +3,7 @@
 import statistics
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import msgspec
 import typer
@@ -46,11 +46,19 @@ class Decision(msgspec.Struct):
     forbidden: list[str] = []
 
 
+class ShownOptions(NamedTuple):
+    """What is printed of a decision."""
+
+    shows_all: Annotated[bool, typer.Option("--all", help="Every action, not the best ones alone")] = False
+    as_json: AsJson = False
+
+
 @command("Example: aos plan deploy/bundles/armadillo-finer --exact --horizon 8")
 def plan(
     bundle: planning_options.Bundle,
     deciding: planning_options.SearchOptions,
     given: planning_options.GivenOptions,
+    shown: ShownOptions,
     belief: Annotated[
         list[str] | None,
         typer.Option(
@@ -60,12 +68,11 @@ def plan(
         ),
     ] = None,
     exact: Annotated[bool, typer.Option("--exact", help="By enumeration instead of search")] = False,
-    as_json: AsJson = False,
     trust_documents: TrustDocuments = False,
 ) -> None:
     """Decide at the initial belief.
 
-    Prints the value of every action, found by search or exactly. With --belief
+    Prints the values of the best actions, found by search or exactly. With --belief
     the probability of a variable's value is another one, and all ratios inside
     are kept: --belief "tiger_behind=Left:0.9" for deploy/bundles/bench/tiger.
     """
@@ -88,7 +95,7 @@ def plan(
 
     decision = planning_options.with_engine(planned, deciding.seed, given, decide)
     title = "exact" if exact else "0 simulations" if deciding.policy is None else "by the policy"
-    show(decision, as_json, lambda made: _print_decision(made, title))
+    show(decision, shown.as_json, lambda made: _print_decision(made, title, shows_all=shown.shows_all))
 
 
 def _suppositions(given: Iterable[str]) -> list[str]:
@@ -132,10 +139,10 @@ async def _searched_decision(engine: Engine, search: Search) -> Decision:
     )
 
 
-def _print_decision(decision: Decision, title: str) -> None:
+def _print_decision(decision: Decision, title: str, *, shows_all: bool) -> None:
     from aos_deploy.views.tables import print_values  # Numbers as JSON need no rich.
 
-    print_values(decision.actions, decision.simulations, title)
+    print_values(decision.actions, decision.simulations, title, shows_all=shows_all)
     if decision.planner:
         print(f"{decision.planner}: {decision.why}")
     for constraint in decision.constraints:

@@ -293,6 +293,8 @@ class Supervisor:
         """Kills a user's own program that SIGSTOP has stopped, and tells of one that serves nothing."""
         child = running.child
         await asyncio.sleep(FROZEN_S)
+        if not running.program.host and not child.is_frozen() and not self.bus.is_routed:
+            await self._until_routed(running)  # The router is silent: the program may be well.
         running.silence = None
         if running.child is child and running.program.host:
             child.stdin.write(b"look\n")  # Its end says what was seen there.
@@ -304,7 +306,18 @@ class Supervisor:
                 self._changed(name, "silent", _SILENT.format(FROZEN_S, child.pid))
 
     async def _kill_if_frozen(self, running: RunningProgram) -> None:
-        child, router = running.child, self._running[ROUTER.name]
+        child = running.child
+        await self._until_routed(running)
+        running.silence = None
+        if running.child is child and self._running[ROUTER.name].is_ready:
+            self._kill_frozen(running)
+
+    async def _until_routed(self, silent: RunningProgram) -> None:
+        """Waits for as long as a process may be silent, and for a router that carries what is said.
+
+        One that carries nothing is killed: we are not heard either, and those behind it may be well.
+        """
+        router = self._running[ROUTER.name]
         is_routed = False
         while not is_routed:
             await asyncio.sleep(FROZEN_S)
@@ -313,11 +326,8 @@ class Supervisor:
                 await asyncio.sleep(FROZEN_S)
             is_routed = self.bus.is_routed
             if not is_routed and router.is_ready:
-                router.silent_since_s = running.silent_since_s
-                self._kill_frozen(router)  # We are not heard either: those behind it may be well.
-        running.silence = None
-        if running.child is child and router.is_ready:
-            self._kill_frozen(running)
+                router.silent_since_s = silent.silent_since_s
+                self._kill_frozen(router)
 
     def _kill_frozen(self, running: RunningProgram) -> None:
         if running.child.returncode is None:

@@ -25,6 +25,9 @@ BOUNDS_WIDTH = 24
 VALUE_WIDTH = 22
 """The width of the value, of a bar of one letter, and of the lines between."""
 
+BEST = 12
+"""So many actions are shown where not all are asked for; one more takes the place of the line about it."""
+
 STORY_WIDTH = 120
 NARROW = 80
 """The width below which the missions' actions stand below the table."""
@@ -37,12 +40,14 @@ _LESS_THAN_THE_PLAN = (
 )
 
 
-def print_values(values: list[ActionValue], simulations: int, title: str) -> None:
+def print_values(values: list[ActionValue], simulations: int, title: str, *, shows_all: bool = True) -> None:
     """The actions, best first, with a bar from the worst value to the best; `title` is for no simulations.
 
     Errors and visits stand beside values where there is room, and what is proven of them, rounded outwards.
+    Where not all are shown, a line tells how many more there are, and what they are worth at most.
     """
-    values = by_worth(values, simulations)
+    ranked = by_worth(values, simulations)
+    values = ranked if shows_all or len(ranked) <= BEST + 1 else ranked[:BEST]
     known = [value for value in values if value.is_known(simulations)]
     lowest = min((value.q for value in known), default=0.0)
     highest = max((value.q for value in known), default=0.0)
@@ -78,6 +83,9 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
         size = (highest - lowest) or 1.0
         table.add_row(*row, Bar(size, 0, max(value.q - lowest, 0), width=bar_width, color="cyan"))
     out.print(table)
+    if more := ranked[len(values) :]:
+        worth = f", worth {digits.signed(more[0].q)} at most" if more[0].is_known(simulations) else ""
+        out.print(f"{count(len(more), 'more action')}{worth}; `--all` and `--json` have them")
     if any(value.at_least is not None and value.q + 2 * value.stderr < value.at_least for value in known):
         out.print(_LESS_THAN_THE_PLAN, style="dim")
 
