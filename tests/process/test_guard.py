@@ -97,25 +97,40 @@ asyncio.run(main())
 """
 
 
-async def test_grandchildren_end_when_the_parent_is_killed_though_the_keeper_is_frozen():
+@pytest.mark.parametrize("frozen", [[], [0], [1], [0, 1]], ids=["none", "guard", "keeper", "both"])
+async def test_grandchildren_end_when_the_parent_is_killed_though_guard_or_keeper_is_frozen(frozen):
     parent = await Child.start([sys.executable, "-c", START_GUARDED], stdout=PIPE)
     await parent.stdout.readline()
     below = descendants(parent.pid)
     assert len(below) == 5  # the guard as well
-    os.kill(below[1], signal.SIGSTOP)
+    for number in frozen:
+        os.kill(below[number], signal.SIGSTOP)
     os.kill(parent.pid, signal.SIGKILL)
     await parent.wait()
     await until_ended(below)
 
 
-async def test_all_that_a_command_started_ends_when_the_guard_itself_is_killed():
+@pytest.mark.parametrize("is_frozen", [False, True], ids=["runs", "is frozen"])
+async def test_all_that_a_command_started_ends_when_the_guard_itself_is_killed_and_the_keeper(is_frozen):
     child = await start(SLEEPERS.format(tail="wait"))
     await child.stdout.readline()
     below = descendants(child.pid)
     assert len(below) == 4
+    if is_frozen:
+        os.kill(below[0], signal.SIGSTOP)
     os.kill(child.pid, signal.SIGKILL)
     await child.wait()
     await until_ended(below)
+
+
+async def test_a_guard_that_is_frozen_and_goes_on_has_lost_nothing():
+    child = await start("echo up; read line; exit 3")
+    await child.stdout.readline()
+    for pid in (child.pid, descendants(child.pid)[0]):
+        os.kill(pid, signal.SIGSTOP)
+        os.kill(pid, signal.SIGCONT)
+    child.stdin.write(b"end\n")
+    assert await child.wait() == 3
 
 
 @pytest.mark.parametrize(

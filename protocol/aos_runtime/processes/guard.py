@@ -16,7 +16,8 @@ With a profile the command runs in a sandbox, and may use the files below the pa
 
 What can start processes runs behind a keeper, a child of the guard that does this work, in a session of its
 own: if the guard is killed with SIGKILL, the keeper ends the command and all that it has started. Engines and
-workers start none, and die with their guard.
+workers start none, and die with their guard. Guard and keeper hear of their parent's end though SIGSTOP has
+stopped them: the kernel tells it by SIGCONT.
 Write command lines with `children.guarded`. The module imports little and no site packages: it starts in
 about 17 ms.
 """
@@ -41,6 +42,9 @@ else:
     import _signal as signal  # `signal` makes enums of the numbers, for a third of the guard's start
 
 _STOP_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+_PARENT_ENDED = signal.SIGCONT
+"""The kernel sends it at the parent's end: of all signals that a process can wait for, this one alone wakes a
+stopped process. Others send it, too."""
 NOT_STARTED = 127
 """The status of a guard whose command cannot be started."""
 _GRACE_S = 0.5
@@ -57,36 +61,60 @@ _LIMITS = {
 def main(arguments: list[str]) -> NoReturn:
     """Runs the command named in the arguments and ends as it ends."""
     grace_s, left_behind_s, niceness, limits, sandbox, command = _parse(arguments)
-    signal.pthread_sigmask(signal.SIG_BLOCK, {*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
-    die_with_parent(signal.SIGTERM)
+    signals = _Signals(os.getppid(), signal.SIGTERM)
+    die_with_parent(_PARENT_ENDED)
     adopt_orphans()
     if sandbox.profile not in ALONE:
-        _leave_to_keeper(grace_s)
+        signals = _leave_to_keeper(signals, grace_s)
     guard_pid = os.getpid()
     pid = os.fork()
     if pid == 0:
         _become(command, niceness, limits, sandbox, guard_pid)
-    status, was_asked = _wait(pid, grace_s)
-    _end_descendants(grace_s if was_asked or left_behind_s is None else left_behind_s)
+    status, was_asked = _wait(pid, signals, grace_s)
+    _end_descendants(signals, grace_s if was_asked or left_behind_s is None else left_behind_s)
     _end_like(status)
 
 
-def _leave_to_keeper(grace_s: float) -> None:
-    """Returns in the keeper. The guard passes its signals on to it, and ends as it ends."""
+class _Signals:
+    """The signals that a guard or a keeper waits for. The end of its parent means the same as `at_end`."""
+
+    def __init__(self, parent_pid: int, at_end: signal.Signals) -> None:
+        signal.pthread_sigmask(signal.SIG_BLOCK, {*_STOP_SIGNALS, _AT_ONCE, _PARENT_ENDED, signal.SIGCHLD})
+        self._parent_pid = parent_pid
+        self._at_end = at_end
+
+    def next(self) -> int:
+        """Waits for one, and returns it; 0 where it means nothing."""
+        received = signal.sigwait({*_STOP_SIGNALS, _AT_ONCE, _PARENT_ENDED, signal.SIGCHLD})
+        return self._meaning(received)
+
+    def is_told_at_once(self, timeout_s: float) -> bool:
+        """Returns whether all has to end at once, as soon as that is told or a child has ended."""
+        received = signal.sigtimedwait({_AT_ONCE, _PARENT_ENDED, signal.SIGCHLD}, max(timeout_s, 0.0))
+        return received is not None and self._meaning(received.si_signo) == _AT_ONCE
+
+    def _meaning(self, received: int) -> int:
+        if received != _PARENT_ENDED:
+            return received
+        return self._at_end if os.getppid() != self._parent_pid else 0
+
+
+def _leave_to_keeper(signals: _Signals, grace_s: float) -> _Signals:
+    """Returns in the keeper, its signals. The guard passes its own on to it, and ends as it ends."""
     guard_pid = os.getpid()
     keeper = os.fork()
     if keeper == 0:
         os.setsid()
-        request_death_signal(_AT_ONCE, guard_pid)
+        request_death_signal(_PARENT_ENDED, guard_pid)
         adopt_orphans()
-        return
+        return _Signals(guard_pid, _AT_ONCE)
     while True:
         ended, status = os.waitpid(keeper, os.WNOHANG)
         if ended:
-            _end_descendants(grace_s)
+            _end_descendants(signals, grace_s)
             _end_like(status)
-        received = signal.sigwait({*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
-        if received != signal.SIGCHLD:
+        received = signals.next()
+        if received not in (0, signal.SIGCHLD):
             os.kill(keeper, received)
             os.kill(keeper, signal.SIGCONT)  # A frozen one hears nothing.
 
@@ -168,7 +196,7 @@ def _limit(kind: int, value: int) -> None:
     resource.setrlimit(kind, (value, value))
 
 
-def _wait(pid: int, grace_s: float) -> tuple[int, bool]:
+def _wait(pid: int, signals: _Signals, grace_s: float) -> tuple[int, bool]:
     """The command's wait status, and whether it was asked to end; being told to stop stops it first."""
     kill_at_s: float | None = None
     while True:
@@ -176,7 +204,7 @@ def _wait(pid: int, grace_s: float) -> tuple[int, bool]:
         if ended:
             return status, kill_at_s is not None
         if kill_at_s is None:
-            received = signal.sigwait({*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
+            received = signals.next()
             if received == _AT_ONCE:
                 kill_at_s = 0.0
                 os.kill(os.getpid(), _AT_ONCE)  # What the command leaves behind ends as quickly.
@@ -186,12 +214,12 @@ def _wait(pid: int, grace_s: float) -> tuple[int, bool]:
         elif time.monotonic() >= kill_at_s:
             _signal_group(pid, signal.SIGKILL)
             return os.waitpid(pid, 0)[1], True
-        elif _is_told_at_once(signal.sigtimedwait({signal.SIGCHLD, _AT_ONCE}, kill_at_s - time.monotonic())):
+        elif signals.is_told_at_once(kill_at_s - time.monotonic()):
             kill_at_s = 0.0
             os.kill(os.getpid(), _AT_ONCE)
 
 
-def _end_descendants(grace_s: float) -> None:
+def _end_descendants(signals: _Signals, grace_s: float) -> None:
     """Ends what the command left behind; it has become this process's own children."""
     kill_at_s = time.monotonic() + grace_s
     told: set[int] = set()
@@ -203,13 +231,9 @@ def _end_descendants(grace_s: float) -> None:
                 told.add(child)
                 name = _told_by_kernel(f"{child}/comm")
                 _tell(f"{child} ({name}) went on after SIGTERM, and is killed")
-        if _is_told_at_once(signal.sigtimedwait({signal.SIGCHLD, _AT_ONCE}, 0.05)):
+        if signals.is_told_at_once(0.05):
             kill_at_s = 0.0
         _reap()
-
-
-def _is_told_at_once(received: signal.struct_siginfo | None) -> bool:
-    return received is not None and received.si_signo == _AT_ONCE
 
 
 def _children() -> list[int]:
