@@ -15,16 +15,9 @@ from aos_protocol.keys import Keys
 from aos_protocol.messages import Fault
 from aos_runtime.bus.bus import Bus
 from aos_runtime.processes.children import PIPE, Child
-from aos_runtime.processes.settings import fault_path
+from aos_runtime.processes.settings import ROUTER_S, fault_path
 
 TESTS = Path(__file__).parents[1]
-PROGRAM = ("-m", "small_service")
-IMPATIENT = """
-from aos_runtime.processes import lifecycle
-from small_service import Settings, serve
-lifecycle.ROUTER_S = 0.1
-lifecycle.run_service(Settings, serve)
-"""
 
 
 class Host:
@@ -32,9 +25,14 @@ class Host:
         self.run_dir = run_dir
         self._endpoint = endpoint
 
-    def settings(self, service: str, mood: str = "good") -> Path:
+    def settings(self, service: str, mood: str = "good", router_s: float = ROUTER_S) -> Path:
         settings = Settings(
-            robot="test", service=service, endpoint=self._endpoint, run_dir=str(self.run_dir), mood=mood
+            robot="test",
+            service=service,
+            endpoint=self._endpoint,
+            run_dir=str(self.run_dir),
+            router_s=router_s,
+            mood=mood,
         )
         path = self.run_dir / f"{service}.json"
         path.write_bytes(msgspec.json.encode(settings))
@@ -42,9 +40,9 @@ class Host:
 
     @asynccontextmanager
     async def running(
-        self, service: str, mood: str = "good", program: tuple[str, str] = PROGRAM
+        self, service: str, mood: str = "good", router_s: float = ROUTER_S
     ) -> AsyncIterator[Child]:
-        argv = [sys.executable, *program, str(self.settings(service, mood))]
+        argv = [sys.executable, "-m", "small_service", str(self.settings(service, mood, router_s))]
         child = await Child.start(argv, env={"PYTHONPATH": str(TESTS)}, stderr=PIPE)
         try:
             yield child
@@ -83,7 +81,7 @@ async def test_a_second_service_of_a_name_is_refused(host: Host, bus: Bus, keys:
 
 async def test_a_service_without_a_router_says_so(tmp_path, unused_tcp_port: int):
     host = Host(tmp_path, f"tcp/127.0.0.1:{unused_tcp_port}")
-    async with host.running("garden", program=("-c", IMPATIENT)) as child:
+    async with host.running("garden", router_s=0.1) as child:
         assert await child.wait() == 1
     assert host.fault("garden").code == "AOS605"
 

@@ -1,12 +1,14 @@
 import os
 import sys
+import time
 from collections.abc import AsyncIterator
 
 import pytest
 
 from aos_runtime.processes.children import PIPE, Child, guarded
 
-BURN = "import time\nwhile time.process_time() < 0.25: pass\nprint('burnt')"
+BURN = "import time\nwhile time.process_time() < 0.25: pass\nprint('burnt', flush=True)"
+BURN_TWICE = f"{BURN}\n{BURN.replace('0.25', '0.5')}"
 COMPETITOR = "print(flush=True)\nwhile True: pass"
 
 
@@ -32,6 +34,16 @@ async def test_the_time_in_which_a_child_waits_for_a_processor_does_not_count():
     # more run it has a sixth of that.
     child = await Child.start(guarded([sys.executable, "-c", BURN]), stdout=PIPE)
     assert await child.in_time(child.stdout.readline(), 0.7) == b"burnt\n"
+    await child.wait()
+
+
+@pytest.mark.usefixtures("one_busy_processor")
+async def test_the_time_for_a_start_leaves_out_what_a_child_waited_for_a_processor_before_it_was_awaited():
+    began_s = time.monotonic()
+    child = await Child.start(guarded([sys.executable, "-c", BURN_TWICE]), stdout=PIPE)
+    await child.stdout.readline()
+    spent_s = time.monotonic() - began_s
+    assert await child.in_time(child.stdout.readline(), 0.7, spent_s=spent_s) == b"burnt\n"
     await child.wait()
 
 

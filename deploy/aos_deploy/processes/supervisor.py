@@ -14,10 +14,10 @@ from __future__ import annotations
 
 import asyncio
 import signal
-from collections.abc import AsyncIterator, Coroutine
+from collections.abc import AsyncIterator, Awaitable, Coroutine
 from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -47,10 +47,12 @@ from aos_runtime.bus.bus import Access, Bus
 from aos_runtime.bus.subscription import merged
 from aos_runtime.clock import Clock
 from aos_runtime.failpoints import reach
-from aos_runtime.processes.lifecycle import ROUTER_S
-from aos_runtime.processes.settings import ServiceSettings
+from aos_runtime.processes.children import MOST_DEADLINES
+from aos_runtime.processes.settings import ROUTER_S, ServiceSettings
 
 ROUTER = Program(name="router", module=ROUTER_MODULE, start_s=ROUTER_S, is_restarted=True)
+
+T = TypeVar("T")
 
 FROZEN_S = 5.0
 """A process of ours that is off the bus for so long, after it was ready, is killed."""
@@ -114,12 +116,12 @@ class Supervisor:
         self.keys = Keys(base.robot)
         self._router, *self._programs = programs
         self._passes = passes
-        self._base = base
+        self._base = msgspec.structs.replace(base, router_s=MOST_DEADLINES * ROUTER.start_s)
         self._run = run
         self._report = report
         self._clock = clock
         self._tasks = tasks
-        self._started_s = clock.monotonic_s()
+        self._started_s = self._routed_s = clock.monotonic_s()
         self._running: dict[str, RunningProgram] = {}
         self._watches: list[asyncio.Task[None]] = []
         self._is_stopping = False
@@ -158,13 +160,15 @@ class Supervisor:
             if program not in later:
                 await self._spawn(program)
         self._beside(self._start_in_order(later))
-        self.bus = self._bus = await Bus.open(
+        opened = Bus.open(
             self._base.endpoint,
             sender="aos-up",
-            connect_timeout_s=ROUTER.start_s,
+            connect_timeout_s=self._base.router_s,
             credential=self._passes.credential(OPERATOR),
             access=Access(self._base.robot, Party(name=OPERATOR, role=OPERATOR)),
         )
+        self.bus = self._bus = await self._started_in_time(self._running[ROUTER.name], opened)
+        self._routed_s = self._clock.monotonic_s()
         self._returns = Returns(self.bus, self.keys, self._beside)
         self._set_ready(self._running[ROUTER.name])
         self._beside(self._follow_presence(self.bus))
@@ -201,12 +205,21 @@ class Supervisor:
             if program.name not in self._running:
                 await self._have_started.wait()
             running = self._running[program.name]
-            elapsed_s = self._clock.monotonic_s() - running.started_s
-            try:
-                await running.child.in_time(running.ready.wait(), program.start_s - elapsed_s)
-            except TimeoutError:
-                message = f"{program.name} was not ready within {program.start_s:g} s"
-                raise DeployError(message, code="AOS802", hint=self.look_at_log(program.name)) from None
+            await self._started_in_time(running, running.ready.wait())
+
+    async def _started_in_time(self, running: RunningProgram, awaited: Awaitable[T]) -> T:
+        """Returns what comes when it has started; DeployError AOS802 if that takes longer than it may.
+
+        The time counts from its start, and from when there is a router to be heard through. Times in which
+        others have the processors do not count.
+        """
+        program = running.program
+        spent_s = self._clock.monotonic_s() - max(running.started_s, self._routed_s)
+        try:
+            return await running.child.in_time(awaited, program.start_s, spent_s=spent_s)
+        except TimeoutError:
+            message = f"{program.name} was not ready within {program.start_s:g} s"
+            raise DeployError(message, code="AOS802", hint=self.look_at_log(program.name)) from None
 
     async def until_one_ended(self, *, timeout_s: float) -> None:
         """Returns after the timeout if every process goes on; if one ends, so does the supervision."""

@@ -26,7 +26,7 @@ PIPE = asyncio.subprocess.PIPE
 Stdio = int | IO[Any] | None
 T = TypeVar("T")
 
-_MOST_DEADLINES = 10
+MOST_DEADLINES = 10
 """The most deadlines that a child has which others keep from the processors."""
 _LEAST_STARVED = 0.05
 """A child that waited for a processor for less than this share of its deadline has had its time."""
@@ -158,23 +158,28 @@ class Child:
         started."""
         return self.returncode is None and _is_stopped(self.pid)
 
-    async def in_time(self, awaited: Awaitable[T], deadline_s: float) -> T:
+    async def in_time(self, awaited: Awaitable[T], deadline_s: float, *, spent_s: float = 0.0) -> T:
         """The result of what it does; TimeoutError where that takes it longer than `deadline_s`.
 
         The time in which it waits for a processor that others have does not count, up to nine deadlines. The
-        first twentieth of a deadline counts whole.
+        first twentieth of a deadline counts whole. A deadline that counts from the child's start gives what
+        is `spent_s` already.
         """
         task = asyncio.ensure_future(awaited)
-        last_s = time.monotonic() + _MOST_DEADLINES * deadline_s
+        last_s = time.monotonic() + MOST_DEADLINES * deadline_s - spent_s
         least_s = _LEAST_STARVED * deadline_s
         try:
             # Most answers come at once. To ask the kernel at each took a third of what decides and records.
             await asyncio.wait({task}, timeout=least_s)
-            left_s, starved_s = deadline_s - least_s, 0.0 if task.done() else self._starved_s()
-            while left_s > 0 and not task.done() and not (await asyncio.wait({task}, timeout=left_s))[0]:
+            left_s = deadline_s - least_s - spent_s
+            starved_s = 0.0 if task.done() or spent_s else self._starved_s()
+            while not task.done():
+                if left_s > 0 and (await asyncio.wait({task}, timeout=left_s))[0]:
+                    break
                 before_s, starved_s = starved_s, self._starved_s()
-                left_s = min(starved_s - before_s, last_s - time.monotonic())
-                left_s = left_s if left_s > least_s else 0.0
+                left_s = min(min(left_s, 0.0) + starved_s - before_s, last_s - time.monotonic())
+                if left_s <= least_s:
+                    break
             if not task.done():
                 raise TimeoutError
             return task.result()

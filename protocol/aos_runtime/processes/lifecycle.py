@@ -34,9 +34,6 @@ from aos_runtime.processes.ending import end
 from aos_runtime.processes.parent import die_with_parent
 from aos_runtime.processes.settings import ServiceSettings, fault_path
 
-ROUTER_S = 10.0
-"""The router may take this time to listen. Services start at the same time, and wait for it as long."""
-
 STORAGE_STATUS = os.EX_IOERR
 """The exit status of a service that could not write or read its files."""
 
@@ -98,7 +95,7 @@ async def serve_on_bus(
     bus = await Bus.open(
         settings.endpoint,
         sender=settings.service,
-        connect_timeout_s=ROUTER_S,
+        connect_timeout_s=settings.router_s,
         clock=clock,
         lease_s=lease_s,
         credential=settings.credential,

@@ -7,11 +7,15 @@ import msgspec
 from aos_protocol.access import ROLES, SERVER, Party
 from aos_runtime.bus.credentials import Credential
 
+ROUTER_S = 10.0
+"""The router may take this time to listen. Services start at the same time, and wait for it as long."""
+
 
 class ServiceSettings(msgspec.Struct, frozen=True, kw_only=True):
     """The settings that every service has; each adds its own. `run_dir` is absolute.
 
-    The password for the bus stands in `password_file`; without one the router is open to everybody.
+    The password for the bus stands in `password_file`; without one the router is open to everybody. The
+    router is waited for `router_s`; whoever supervises both may end the service before that.
     """
 
     robot: str
@@ -19,6 +23,7 @@ class ServiceSettings(msgspec.Struct, frozen=True, kw_only=True):
     endpoint: str
     run_dir: str
     password_file: str = ""
+    router_s: float = ROUTER_S
 
     @property
     def party(self) -> Party:
