@@ -47,7 +47,7 @@ class Decision(msgspec.Struct):
 
 
 class ShownOptions(NamedTuple):
-    """What is printed of a decision."""
+    """Options for what is printed of a decision."""
 
     shows_all: Annotated[bool, typer.Option("--all", help="Every action, not the best ones alone")] = False
     as_json: AsJson = False
