@@ -18,7 +18,9 @@ MAX_BYTES = 16 * 1024 * 1024
 UNREADABLE = (msgspec.MsgspecError, RecursionError, UnicodeDecodeError)
 """The errors of msgspec's decoders. The last two come of nested values, and of text that is no UTF-8."""
 
-_HINT = "A payload is a MessagePack map of version, stamp_ns, sender and body: see docs/protocol.md"
+_ENVELOPE = "A payload is a MessagePack map of version, stamp_ns, sender and body: see docs/protocol.md"
+_BODY = "The envelope can be read, its body cannot: docs/protocol.md names the messages with their fields"
+_TOO_LARGE = "Send only what mappings read, and pictures by the names of their files"
 
 M = TypeVar("M", bound=Message)
 
@@ -45,7 +47,7 @@ def open_envelope(payload: bytes) -> Envelope:
     """The envelope, its body still encoded."""
     if len(payload) > MAX_BYTES:
         text = f"a message of {len(payload)} bytes is too large: the bus carries {MAX_BYTES}"
-        raise BusError(text, code="AOS602")
+        raise BusError(text, code="AOS602", hint=_TOO_LARGE)
     envelope = _checked_decode(payload, Envelope)
     if envelope.version.split(".")[0] != PROTOCOL_VERSION.split(".")[0]:
         message = f"{envelope.sender} speaks protocol {envelope.version}, this is {PROTOCOL_VERSION}"
@@ -79,5 +81,6 @@ def _checked_decode(payload: bytes | msgspec.Raw, kind: type[M]) -> M:
     try:
         message: M = _decoder(kind).decode(payload)
     except UNREADABLE as error:
-        raise BusError(f"no {kind.__name__}: {error}", code="AOS602", hint=_HINT) from error
+        hint = _ENVELOPE if kind is Envelope else _BODY
+        raise BusError(f"no {kind.__name__}: {error}", code="AOS602", hint=hint) from error
     return message

@@ -314,6 +314,8 @@ async def test_a_question_or_answer_of_the_wrong_kind_is_malformed(bus: Bus, oth
     with pytest.raises(BusError, match=rf"the answer on {keys.project}: no CatalogueEntry") as wrong_answer:
         await bus.ask(keys.project, TopicMessage(1, {}), CatalogueEntry, timeout_s=2)
     assert wrong_question.value.code == wrong_answer.value.code == "AOS602"
+    for error in (wrong_question.value, wrong_answer.value):
+        assert error.hint.startswith("The envelope can be read, its body cannot")
 
 
 async def test_rubbish_as_a_question_is_refused(endpoint: str, other: Bus, keys: Keys):
