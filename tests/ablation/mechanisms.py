@@ -48,7 +48,15 @@ ROUTES = (
         "auto",
         "auto",
         (),
-        ("exact", "endless", "certainty_equivalent", "repeated_trials", "lower_trials", "simple_policies"),
+        (
+            "exact",
+            "endless",
+            "certainty_equivalent",
+            "region_plans",
+            "repeated_trials",
+            "lower_trials",
+            "simple_policies",
+        ),
     ),
     Route("pomcp", "pomcp", (), ("listed_values", "step_table", *_SEARCH)),
     Route(

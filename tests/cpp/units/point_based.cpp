@@ -187,6 +187,32 @@ TEST("The simple policy that is compared first has the time of all missions") {
   EXPECT(usual < all);
 }
 
+TEST("The simple policy that asks nothing has the time of all missions, too: it works, where others ask for what is of no use") {
+  constexpr std::uint32_t phases = 5, work = 0, look = 1, left = 2, right = 3, sides = 2, end = 4 * (phases + 1);
+  Problem problem = world(end + 1, 4, 0.99);
+  problem.sensings = {{{0, 1.0}}, {{1, 1.0}}, {{2, 1.0}}, {{3, 0.8}, {4, 0.2}}, {{3, 0.2}, {4, 0.8}}};
+  problem.endings[end] = 1;
+  start_evenly(problem, 0, 4);
+  for (std::uint32_t state = 0; state < end; ++state) {
+    const std::uint32_t phase = state / 4, side = state / sides % 2, coin = state % 2;
+    const auto tossed = [&](std::uint32_t next, std::uint32_t sensing, double reward) {
+      return aos::List<exam::Outcome>{{0.5, 4 * next + 2 * side, sensing, reward}, {0.5, 4 * next + 2 * side + 1, sensing, reward}};
+    };
+    const bool is_last = phase == phases;
+    for (const std::uint32_t action : {work, look, left, right}) row(problem, state, action) = {{1.0, end, 0, is_last && action == left + side ? 30.0 : -10.0}};
+    if (is_last) continue;
+    row(problem, state, work) = tossed(phase + 1, phase + 1 == phases ? 3 + side : 0, 0.0);
+    row(problem, state, look) = tossed(phase, 1 + coin, -0.5);
+  }
+  const point_based::FlatModel model = flat_model(problem);
+  point_based::OnlineSarsop search{model};
+  search.move_to(model.starts.front().belief);
+  std::uint64_t all = 0;
+  const auto policy = search.best_policy(20, {1, never}, {0, never}, all);
+  EXPECT(policy.has_value());
+  EXPECT_NEAR(policy->value, std::pow(0.99, phases) * (0.8 * 30 - 0.2 * 10), 1e-6);
+}
+
 TEST("Bounds of actions hold before these are opened, and are narrower afterwards") {
   TigerSearch search;
   const double values[] = {19.3714, -45 + 0.95 * 19.3714};
@@ -261,6 +287,23 @@ TEST("A simple policy decides with a standard error above the bound, and with le
   EXPECT(0 < decided[0] && decided[0] < decided[1] && decided[1] < all);
 }
 
+TEST("A simple policy that does what the plan of the lower bound does decides nothing") {
+  for (const double cost : {0.07, 0.08, 0.3}) {  // of waiting for what nobody tells: to guess costs more
+    Problem problem = world(3, 3, 0.97);
+    start_evenly(problem, 0, 2);
+    problem.endings[2] = 1;
+    for (std::uint32_t state = 0; state < 2; ++state) {
+      for (std::uint32_t guess = 0; guess < 2; ++guess) row(problem, state, guess) = {{1.0, 2, 0, guess == state ? 10.0 : -50.0}};
+      row(problem, state, 2) = {{1.0, state, 0, -cost}};
+    }
+    point_based::OnlineSarsop search{flat_model(problem)};
+    search.move_to({{0, 0.5}, {1, 0.5}});
+    std::uint64_t work = 0;
+    EXPECT(!search.best_policy(10, {0, never}, work).has_value());
+    EXPECT(work > 0);
+  }
+}
+
 TEST("Beside a room of too many states, a plan for the room behind it opens all boxes in turn") {
   constexpr std::uint32_t many = 400, boxes = 3, end = many + boxes;
   Problem problem = world(end + 1, boxes, 0.9);
@@ -275,6 +318,28 @@ TEST("Beside a room of too many states, a plan for the room behind it opens all 
   point_based::OnlineSarsop search{flat_model(problem)};
   EXPECT(search.move_to({{many, 1.0 / 3}, {many + 1, 1.0 / 3}, {many + 2, 1.0 / 3}}));
   EXPECT_NEAR(search.bounds().first, (10 + (-1 + 0.9 * 10) + (-1 - 0.9 + 0.81 * 10)) / 3, 1e-6);
+}
+
+TEST("Where places are seen, the first bounds have a plan that goes to a far one, with a horizon and without") {
+  constexpr std::uint32_t places = 5, stay = 0, go = 1, take = 2;
+  for (const auto& [unseen, horizon] : {std::pair<std::uint32_t, std::size_t>{2, 10}, {400, 0}}) {  // of 400 no certainty-equivalent plan is made
+    const std::uint32_t end = places * unseen;
+    Problem problem = world(end + 1, 3, 0.9);
+    start_evenly(problem, 0, unseen);
+    problem.endings[end] = 1;
+    problem.sensings.clear();
+    for (std::uint32_t place = 0; place < places; ++place) problem.sensings.push_back({{static_cast<int>(place), 1.0}});
+    for (std::uint32_t state = 0; state < end; ++state) {
+      const std::uint32_t place = state / unseen, next = std::min(place + 1, places - 1);
+      row(problem, state, stay) = {{1.0, state, place, -0.5}};
+      row(problem, state, go) = {{1.0, next * unseen + state % unseen, next, -1.0}};
+      row(problem, state, take) = {{1.0, end, 0, place < places - 1 ? -20.0 : state % 2 == 0 ? 10.0 : 20.0}};
+    }
+    point_based::FlatModel model = flat_model(problem);
+    model.horizon = horizon;
+    point_based::OnlineSarsop search{std::move(model)};
+    EXPECT_NEAR(search.bounds().first, -1 - 0.9 - 0.81 - 0.729 + 0.6561 * 15, 1e-6);
+  }
 }
 
 TEST("A belief of states that no start leads to is refused") {

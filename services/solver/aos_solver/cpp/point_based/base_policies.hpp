@@ -37,10 +37,11 @@ class BasePolicies {
       Candidate& added = candidates.emplace_back(&policy, policy.weight * worth);
       added.first = choice(now, added);
     }
-    // Where few missions fit, the policy that decided last is compared first.
+    // Where few missions fit, the policy that decided last is compared first, and then the one that asks nothing: its missions are cheap.
+    std::ranges::stable_partition(candidates, [](const Candidate& candidate) { return candidate.weight == 0; });
     std::ranges::stable_partition(candidates, [this](const Candidate& candidate) { return candidate.policy == last_; });
     for (Candidate& candidate : candidates) {
-      const Ends& ends = &candidate == &candidates.front() ? most : usual;
+      const Ends& ends = &candidate - candidates.data() < 2 ? most : usual;
       for (std::size_t i = 0; i < fewest_missions && !ends.over(); ++i) play(node, candidate, steps, ends.late, uniform);
     }
     std::size_t missions = first_missions - fewest_missions;
@@ -104,7 +105,8 @@ class BasePolicies {
       std::optional<PolicyValue> found = value_of(candidate, 1);
       if (!found) continue;
       if (!value_of(candidate)) found->standard_error = worth / 2 / std::sqrt(candidate.returns.count());
-      if (found->value - (candidate.policy == before ? 0 : found->standard_error) <= least) continue;
+      // A mission that does what the bound's plan does may return more than that by rounding.
+      if (found->value - (candidate.policy == before ? 0 : found->standard_error) <= least + closed_share * worth) continue;
       last_ = candidate.policy;
       return found;
     }

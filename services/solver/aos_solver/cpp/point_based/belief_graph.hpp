@@ -29,8 +29,10 @@ class BeliefGraph {
     informed_ = std::move(bounds.informed);
     for (const ActionValues& values : informed_) sizes_.push_back(largest_size(values));
     tails_ = Tails{model, bounds.blind};
-    for (const Region& region : regions.all) {
-      lower_.push_back(blind_bound(model, region, bounds.blind, tails_));
+    List<RegionPlan> plans;
+    if (switches::region_plans) plans = RegionPlans{model, regions, bounds.blind, rounding_}.by_layer();
+    for (std::uint32_t region = 0; region < regions.all.size(); ++region) {
+      lower_.push_back(blind_bound(model, region, regions.all[region], bounds.blind, plans, tails_));
       for (std::uint32_t number = 0; number < lower_.back().size(); ++number) note_size(lower_.back()[number]);
     }
     if (switches::certainty_equivalent && is_endless()) add_certainty_equivalent(bounds.blind.front());

@@ -1,9 +1,10 @@
-// Plans that repeat one action whatever is observed: the alpha vectors that are there before any trial, and what they
-// add at the end of another plan.
+// Plans that look at nothing but the region: the alpha vectors that are there before any trial, and what those that repeat one
+// action add at the end of another plan.
 #pragma once
 
 #include "point_based/bounds.hpp"
 #include "point_based/initial_bounds.hpp"
+#include "point_based/region_plans.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/rounding.hpp"
 
@@ -50,36 +51,54 @@ inline bool is_nowhere_above(const List<double>& values, const List<double>& oth
   return std::equal(values.begin(), values.end(), others.begin(), std::less_equal<>{});
 }
 
-// The lower bound of a region by the plans that repeat one action, without those that give nothing more.
-inline LowerBound blind_bound(const FlatModel& model, const Region& region, const List<ActionValues>& blind,
-                              const Tails& tails) {
-  const bool is_endless = model.horizon == 0;
-  LowerBound lower;
+// The vectors of a plan in the order of their lengths, without longer ones that give nothing more. `values_of` has the values with so
+// many decisions left, by state.
+List<AlphaVector> vectors_of(std::size_t layers, const Tails& tails, auto&& action_of, auto&& values_of) {
   List<AlphaVector> vectors;
-  for (std::uint32_t action = 0; action < model.actions; ++action) {
-    const std::size_t first = vectors.size();
-    for (std::uint32_t left = is_endless ? 0 : 1; left < blind.size(); ++left) {
-      List<double> values;
-      for (const std::uint32_t state : region.states) values.push_back(blind[left][model.row(state, action)]);
-      if (vectors.size() > first) {  // longer plans only where they give more
-        const AlphaVector& before = vectors.back();
-        const double worth_it = tails.of(before.length, left) + 1e-9 * before.size;
-        const auto gives_no_more = [&](double value, double known) { return value <= known + worth_it; };
-        if (std::equal(values.begin(), values.end(), before.values.begin(), gives_no_more)) continue;
-      }
-      vectors.emplace_back(action, left, std::move(values));
+  for (std::uint32_t left = layers == 1 ? 0 : 1; left < layers; ++left) {
+    List<double> values = values_of(left);
+    if (!vectors.empty()) {
+      const AlphaVector& before = vectors.back();
+      const double worth_it = tails.of(before.length, left) + 1e-9 * before.size;
+      const auto gives_no_more = [&](double value, double known) { return value <= known + worth_it; };
+      if (std::equal(values.begin(), values.end(), before.values.begin(), gives_no_more)) continue;
     }
+    vectors.emplace_back(action_of(left), left, std::move(values));
   }
-  if (is_endless) {  // one of each action
-    for (std::size_t i = vectors.size(); i-- > 0;) {
-      for (std::size_t j = 0; j < vectors.size(); ++j) {
-        if (i == j || !is_nowhere_above(vectors[i].values, vectors[j].values)) continue;
-        vectors.erase(vectors.begin() + static_cast<std::ptrdiff_t>(i));
+  return vectors;
+}
+
+// The lower bound of a region by the plans that repeat one action, and by the one that knows regions. Without a horizon those that
+// give nothing more are left out.
+inline LowerBound blind_bound(const FlatModel& model, std::uint32_t number, const Region& region, const List<ActionValues>& blind,
+                              const List<RegionPlan>& region_plans, const Tails& tails) {
+  List<List<AlphaVector>> plans;
+  const auto by_state = [&](auto&& value_of) {
+    List<double> values;
+    for (const std::uint32_t state : region.states) values.push_back(value_of(state));
+    return values;
+  };
+  for (std::uint32_t action = 0; action < model.actions; ++action) {
+    plans.push_back(vectors_of(blind.size(), tails, [&](std::uint32_t) { return action; }, [&](std::uint32_t left) {
+      return by_state([&](std::uint32_t state) { return blind[left][model.row(state, action)]; });
+    }));
+  }
+  if (!region_plans.empty()) {
+    plans.push_back(vectors_of(blind.size(), tails, [&](std::uint32_t left) { return region_plans[left].actions[number]; }, [&](std::uint32_t left) {
+      return by_state([&](std::uint32_t state) { return region_plans[left].values[state]; });
+    }));
+  }
+  if (model.horizon == 0) {
+    for (std::size_t i = plans.size(); i-- > 0;) {
+      for (std::size_t j = 0; j < plans.size(); ++j) {
+        if (i == j || !is_nowhere_above(plans[i].front().values, plans[j].front().values)) continue;
+        plans.erase(plans.begin() + static_cast<std::ptrdiff_t>(i));
         break;
       }
     }
   }
-  for (AlphaVector& vector : vectors) lower.add_blind(std::move(vector));
+  LowerBound lower;
+  for (List<AlphaVector>& plan : plans) lower.add_blind(std::move(plan));
   return lower;
 }
 

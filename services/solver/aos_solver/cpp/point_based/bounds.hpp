@@ -48,13 +48,13 @@ inline double expected(const List<double>& values, const Belief& belief) {
 }
 
 // The alpha vectors of a region. A vector that is given up becomes empty, and the others keep their numbers.
-// The initial vectors are never given up. The first of these, the blind ones, always repeat one action.
+// The initial vectors are never given up. The first of these, the blind ones, look at nothing but the region.
 class LowerBound {
  public:
-  // The blind vectors of one action are added in the order of their lengths.
-  void add_blind(AlphaVector vector) {
-    add_initial(std::move(vector));
-    ++blind_;
+  // Adds the vectors of a blind plan, in the order of their lengths.
+  void add_blind(List<AlphaVector> vectors) {
+    for (AlphaVector& vector : vectors) add_initial(std::move(vector));
+    ends_.push_back(initial_);
   }
   // Further initial vectors are added after the blind ones: one for each state of the region, or none.
   void add_initial(AlphaVector vector) {
@@ -71,7 +71,7 @@ class LowerBound {
   }
   const AlphaVector& operator[](std::uint32_t number) const { return vectors_[number]; }
   std::uint32_t size() const { return static_cast<std::uint32_t>(vectors_.size()); }
-  std::uint32_t blind() const { return blind_; }
+  std::uint32_t blind() const { return ends_.empty() ? 0 : ends_.back(); }
   std::uint32_t initial() const { return initial_; }
   std::size_t kept() const { return kept_; }
   // Removes the vectors that were given up. The others get new numbers.
@@ -82,18 +82,20 @@ class LowerBound {
     vectors_.erase(vectors_.begin() + initial_, vectors_.end());
     kept_ = initial_;
   }
-  // Calls `take` with the longest blind vector of each action that has at most `left` decisions.
+  // Calls `take` with the longest vector of each blind plan that has at most `left` decisions.
   void for_blind(std::uint32_t left, auto&& take) const {
-    for (std::uint32_t number = 0; number < blind_; ++number) {
-      if (vectors_[number].length > left) continue;
-      const bool is_last = number + 1 == blind_ || vectors_[number + 1].action != vectors_[number].action;
-      if (is_last || vectors_[number + 1].length > left) take(number);
+    std::uint32_t first = 0;
+    for (const std::uint32_t end : ends_) {
+      std::uint32_t number = end;
+      while (number > first && vectors_[number - 1].length > left) --number;
+      if (number > first) take(number - 1);
+      first = end;
     }
   }
 
  private:
   std::deque<AlphaVector> vectors_;  // elements of a deque stay where they are
-  std::uint32_t blind_ = 0;
+  List<std::uint32_t> ends_;  // of each blind plan's vectors
   std::uint32_t initial_ = 0;
   std::size_t kept_ = 0;
 };

@@ -17,7 +17,7 @@
   /* savings */ \
   of(saving_lookahead) of(saving_rollouts) of(later_attention) \
   /* SARSOP */ \
-  of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies) \
+  of(endless) of(certainty_equivalent) of(region_plans) of(repeated_trials) of(lower_trials) of(simple_policies) \
   /* POMCP's values of states, and its prior */ \
   of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state) of(priced_information) \
   /* POMCP's search */ \
