@@ -41,7 +41,7 @@ _OPTIONS = (
     "best_end",
 )
 _SAVINGS = ("savings", "saving_lookahead", "saving_rollouts", "later_attention")
-_SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree")
+_SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree", "no_idling")
 
 ROUTES = (
     Route(

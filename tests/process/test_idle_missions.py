@@ -91,3 +91,35 @@ async def test_nothing_is_begun_that_the_step_limit_does_not_let_end():
     )
     assert [each.action for each in around.decisions] == ["dig"] * 3 + ["gather"] * 2
     assert [each.horizon for each in around.decisions] == [4, 4, 3, 2, 1]
+
+
+async def test_nobody_waits_for_a_state_that_is_never_seen():
+    writer = BundleWriter(
+        "doors",
+        """horizon: 20
+discount: 0.95
+
+state_variable: int door
+
+state_variable: bool is_over
+
+initial_belief:
+state.door = AOS.SampleDiscrete(std::vector<double>(8, 1.0));
+
+reward_code:
+if (state.is_over) __isGoalState = true;
+""",
+    )
+    writer.skill(
+        "open", "state__.is_over = true;\n__reward = state.door == door ? 10 : -50;", over={"door": "8"}
+    )
+    writer.skill("leave", "state__.is_over = true;")
+    writer.skill("wait", "__reward = -0.2;")
+    built = await built_text(writer.files)
+    _, around = await run_mission(
+        built,
+        lambda request: observed(request, "DefaultObservation"),
+        limits=MissionLimits(step_limit=1),
+        search=Search(simulations=500, seed=1, planner="pomcp"),
+    )
+    assert [each.action for each in around.decisions] == ["leave"]

@@ -172,7 +172,7 @@ class Claims {
   // What decisions say is proven of actions, for as many decisions as the horizon has.
   void check_proven(const Planner& planner, const Belief& belief, const Mass& exact, double running) {
     const aos::List<aos::ActionEstimate> estimates = planner.estimates(belief);
-    const auto values = planner.values(belief, estimates, planner.choice(estimates));
+    const auto values = planner.values(belief, estimates, planner.choice(belief, estimates, {}));
     Truth& truth = truth_of(problem_.horizon);
     for_some_actions(values.size(), [&](std::size_t action) {
       const auto& [at_least, at_most] = std::pair{values[action].at_least, values[action].at_most};

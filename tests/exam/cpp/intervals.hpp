@@ -101,7 +101,7 @@ inline std::string intervals_of(const Problem& problem, const IntervalOptions& o
     const aos::Budget budget{.simulations = options.simulations};
     planner.search(aos::PlannerKind::pomcp, belief, budget, problem.horizon, random);
     const aos::List<aos::ActionEstimate> estimates = planner.estimates(belief);
-    const int chosen = planner.choice(estimates);
+    const int chosen = planner.choice(belief, estimates, {});
     const aos::List<aos::ActionEstimate> told = planner.values(belief, estimates, chosen);
     const int other = runner_up(told, chosen);
     if (other >= 0) {

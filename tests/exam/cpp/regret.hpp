@@ -212,7 +212,7 @@ class Regret {
     const aos::Budget budget{.simulations = options_.simulations, .seconds = options_.seconds};
     planner.search(kind_of(name), belief, budget, problem_.horizon, random);
     const aos::List<aos::ActionEstimate> estimates = planner.estimates(belief);
-    const int action = planner.choice(estimates);
+    const int action = planner.choice(belief, estimates, {});
     const auto told = planner.values(belief, estimates, action)[action];
     return {action, planner.name(), planner.why(), told};
   }

@@ -21,7 +21,7 @@
   /* POMCP's values of states, and its prior */ \
   of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state) of(priced_information) \
   /* POMCP's search */ \
-  of(step_table) of(expected_rewards) of(rollout_repeats) of(rollout_ends) of(rollout_shares) of(own_spread) of(max_backup) of(turns) \
+  of(step_table) of(expected_rewards) of(rollout_repeats) of(rollout_ends) of(rollout_shares) of(own_spread) of(max_backup) of(turns) of(no_idling) \
   of(certain_actions) of(sooner) of(observation_cells) of(kept_tree)
 
 namespace aos::switches {

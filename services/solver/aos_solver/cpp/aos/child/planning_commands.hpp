@@ -147,7 +147,7 @@ class PlanningCommands {
     const std::uint64_t known = search.known_simulations();
     const std::uint64_t simulations = search.search(*planner, belief, budget, horizon, random, barred);
     const auto estimates = search.estimates(belief);
-    const int best = search.choice(estimates, barred);
+    const int best = search.choice(belief, estimates, barred);
     const auto values = search.values(belief, estimates, best);
     json.begin_object().member("index", numbers[best]).member("place", best);
     json.member("simulations", simulations).member("horizon", horizon).member("known_simulations", known);

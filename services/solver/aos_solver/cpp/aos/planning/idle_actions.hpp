@@ -10,10 +10,11 @@ namespace aos {
 
 inline constexpr std::size_t most_states_compared = 20'000;
 
-// Whether an action earns nothing, changes no running state of a belief, and is answered alike in all of them, without a draw.
+// What an action earns that pays nothing, changes no running state of a belief, and is answered alike in all of them, without a draw. Nothing
+// if it is no such action.
 template <class Model>
-bool is_idle(const Belief<Model>& belief, int action) {
-  if (belief.particles().size() > most_states_compared) return false;
+std::optional<double> earned_idle(const Belief<Model>& belief, int action) {
+  if (belief.particles().size() > most_states_compared) return {};
   const ForgottenTexts forgotten;
   const StateNumbers<Model> numbers;
   Enumerator draws;
@@ -21,6 +22,7 @@ bool is_idle(const Belief<Model>& belief, int action) {
   Step step;
   std::optional<Observation> told;
   bool changes_nothing = true;
+  double earned = 0;
   const bool is_certain = comes_to_an_end([&] {
     for (const auto& [state, weight] : belief.particles()) {
       if (Model::ending(state) != Ending::running) continue;
@@ -32,9 +34,15 @@ bool is_idle(const Belief<Model>& belief, int action) {
       if (!told) told = step.observation;
       changes_nothing = step.reward <= 0 && step.observation == *told && Model::ending(next) == Ending::running && numbers.are_same(state, next);
       if (!changes_nothing) return;
+      earned += weight * step.reward;
     }
   });
-  return is_certain && changes_nothing && told;
+  return is_certain && changes_nothing && told ? std::optional{earned} : std::nullopt;
+}
+
+template <class Model>
+bool is_idle(const Belief<Model>& belief, int action) {
+  return earned_idle(belief, action).has_value();
 }
 
 }

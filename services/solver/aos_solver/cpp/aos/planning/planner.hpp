@@ -79,6 +79,8 @@ class Planner {
       return !is_barred(estimate) && estimate.n > 0 && is_reliable(estimate, most);
     });
   }
+  // Whether it may promise more after an action that changes nothing and tells nothing than it promises now.
+  virtual bool may_put_off() const { return false; }
   // What a decision tells if the belief is what it should be; `estimates` are those by which `choice` was made.
   virtual Estimates values(const Belief<Model>& /*belief*/, Estimates estimates, int /*choice*/) const { return estimates; }
   // How far bounds of values have to be widened; see StateSpace.

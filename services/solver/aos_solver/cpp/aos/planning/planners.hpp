@@ -5,6 +5,7 @@
 #include "aos/planning/belief_tree/belief_tree.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/despot/despot.hpp"
+#include "aos/planning/idle_actions.hpp"
 #include "aos/planning/listed/exact_search.hpp"
 #include "aos/planning/listed/sarsop_planner.hpp"
 #include "aos/planning/listed/state_space.hpp"
@@ -66,6 +67,21 @@ class Planners {
   Estimates estimates(const Belief<Model>& belief) const { return used_->estimates(belief); }
   int choice(const Estimates& estimates, const BarredActions& barred = {}) const {
     return used_->choice(estimates, horizon_, barred);
+  }
+  // The same, but after an idle action the decision is the same one again: it is worth no more than the best of the others, if that is worth more
+  // than to idle until the horizon.
+  int choice(const Belief<Model>& belief, const Estimates& estimates, BarredActions barred) const {
+    const int best = choice(estimates, barred);
+    if (!switches::no_idling || !used_->may_put_off()) return best;
+    double idling = -std::numeric_limits<double>::infinity();
+    int other = best;
+    while (const std::optional<double> earned = earned_idle(belief, other)) {
+      idling = std::max(idling, *earned * discounted_steps<Model>(horizon_));
+      barred.insert(other);
+      other = choice(estimates, barred);
+      if (barred.contains(other) || estimates[other].n == 0) return best;
+    }
+    return other == best || estimates[other].q > idling ? other : best;
   }
   List<std::uint64_t> simulations_by_thread() const { return used_->simulations_by_thread(); }
   std::uint64_t known_simulations() const { return used_->known_simulations(); }

@@ -21,6 +21,9 @@ class TreePlanner : public Planner<Model> {
     return simulations;
   }
 
+  // Values of seen states, or the best of few returns, are too high below each action.
+  bool may_put_off() const override { return true; }
+
   Estimates values(const Belief<Model>& belief, Estimates estimates, int choice) const override {
     bound(belief, estimates);
     const bool was_searched = estimates[choice].n > 0;
