@@ -44,13 +44,14 @@ TEST("A robot that can act in hundreds of ways does not seek where to look round
   constexpr double steps = 20'000;
   Problem problem = world(160, 400, 0.95);
   start_evenly(problem, 0, 160);
-  const auto belief = drawn_belief<Unlisted>(problem);
+  problem.noise = exam::Noise::refused;
+  const Belief belief = drawn_belief(problem);
   aos::Sampler random{1};
-  aos::SeekPolicy<Unlisted> policy;
+  aos::SeekPolicy<TableModel> policy;
   policy.find(belief, horizon, {}, 10, random);  // what runs down is found out once
-  Unlisted::steps = 0;
+  TableModel::noisy_steps = 0;
   EXPECT_EQUAL(policy.find(belief, horizon, {}, steps, random).action, -1);
-  EXPECT(Unlisted::steps <= steps);
+  EXPECT(TableModel::noisy_steps <= steps);
 }
 
 TEST("No planner takes much more than its budget in simulations, and POMCP takes all of it") {
