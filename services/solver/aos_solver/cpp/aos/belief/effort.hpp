@@ -27,8 +27,8 @@ struct UpdateEffort {
     std::string told = std::to_string(steps) + " steps of the model";
     if (traced > 0) told += "; " + std::to_string(traced) + " earlier steps were repeated";
     if (moves == 0) return told;
-    return told + "; " + std::to_string(moved) + " particles moved " + std::to_string(moves) + " times since " +
-           std::to_string(std::llround(fewest)) + " effective samples remained";
+    return told + "; " + std::to_string(moved) + " particles were moved " + (moves == 1 ? "once" : std::to_string(moves) + " times") +
+           ", as only " + std::to_string(std::llround(fewest)) + " effective samples were left";
   }
 };
 
