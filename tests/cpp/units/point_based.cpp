@@ -320,7 +320,7 @@ TEST("Beside a room of too many states, a plan for the room behind it opens all 
   EXPECT_NEAR(search.bounds().first, (10 + (-1 + 0.9 * 10) + (-1 - 0.9 + 0.81 * 10)) / 3, 1e-6);
 }
 
-TEST("Where places are seen, the first bounds have a plan that goes to a far one, with a horizon and without") {
+TEST("Where places are seen, the first bounds have a plan that goes to a far one") {
   constexpr std::uint32_t places = 5, stay = 0, go = 1, take = 2;
   for (const auto& [unseen, horizon] : {std::pair<std::uint32_t, std::size_t>{2, 10}, {400, 0}}) {  // of 400 no certainty-equivalent plan is made
     const std::uint32_t end = places * unseen;

@@ -30,7 +30,8 @@ class BeliefGraph {
     for (const ActionValues& values : informed_) sizes_.push_back(largest_size(values));
     tails_ = Tails{model, bounds.blind};
     List<RegionPlan> plans;
-    if (switches::region_plans) plans = RegionPlans{model, regions, bounds.blind, rounding_}.by_layer();
+    // In a single region such a plan would look at nothing, and missions that it decides ask less (docs/lab/bounds.md).
+    if (switches::region_plans && regions.all.size() > 1) plans = RegionPlans{model, regions, bounds.blind, rounding_}.by_layer();
     for (std::uint32_t region = 0; region < regions.all.size(); ++region) {
       lower_.push_back(blind_bound(model, region, regions.all[region], bounds.blind, plans, tails_));
       for (std::uint32_t number = 0; number < lower_.back().size(); ++number) note_size(lower_.back()[number]);

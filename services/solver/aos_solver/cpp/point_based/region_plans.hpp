@@ -66,7 +66,7 @@ class RegionPlans {
     return highest;
   }
 
-  // Puts the best action before a plan of which each state's value is known, if the sum then exceeds that of the region. Returns by how much.
+  // Puts the best action before a plan of which each state's value is known, if the sum of its values then exceeds `sum`. Returns by how much.
   double put_before(std::uint32_t region, const List<double>& later, double sum, RegionPlan& plan) const {
     const List<std::uint32_t>& states = regions_.all[region].states;
     double highest = sum;
