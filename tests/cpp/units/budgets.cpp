@@ -40,6 +40,19 @@ TEST("POMCP and DESPOT take as many steps of a model that cannot be listed, up t
   EXPECT(of_despot < 3 * of_pomcp);
 }
 
+TEST("A budget that is over before the search begins still tries some action") {
+  Problem tiger = units::tiger();
+  tiger.noise = exam::Noise::refused;
+  const Belief belief = drawn_belief(tiger);
+  for (const PlannerKind kind : {PlannerKind::pomcp, PlannerKind::automatic}) {
+    aos::Planners<TableModel> planners;
+    aos::Sampler random{1};
+    EXPECT(planners.search(kind, belief, {.seconds = 1e-9}, horizon, random) > 0);
+    const aos::Estimates estimates = planners.estimates(belief);
+    EXPECT(estimates[planners.choice(estimates)].n > 0);
+  }
+}
+
 TEST("A robot that can act in hundreds of ways does not seek where to look round takes more steps than it has") {
   constexpr double steps = 20'000;
   Problem problem = world(160, 400, 0.95);

@@ -125,6 +125,7 @@ class Planners {
 
  private:
   using Order = List<Planner<Model>*>;
+  static constexpr double least_left = 0.1;  // of a budget, for the planner that decides
 
   StateSpace<Model> space_;
   MdpValues<Model> values_{space_};
@@ -142,9 +143,9 @@ class Planners {
   // Which planners are tried in turn, by what was asked for. The last ones can always decide.
   const Order order_[std::size(planner_names)] = {
       {&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &seek_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}};
-  // What is left of a budget in time after so much of it.
+  // What is left of a budget in time after so much of it. Nobody decides without a search, also where others have looked for too long.
   static Budget left_of(Budget budget, std::chrono::nanoseconds spent) {
-    if (budget.seconds > 0) budget.seconds = std::max(budget.seconds - std::chrono::duration<double>(spent).count(), 1e-6);
+    if (budget.seconds > 0) budget.seconds = std::max(budget.seconds - std::chrono::duration<double>(spent).count(), least_left * budget.seconds);
     return budget;
   }
 

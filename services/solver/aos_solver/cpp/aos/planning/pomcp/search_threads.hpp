@@ -86,7 +86,8 @@ class SearchThreads {
       std::uint64_t descents = 0;
       while (!has_limit || done.simulations < budget.simulations) {
         if (descents % between_looks == 0) {
-          if (is_over() || (budget.seconds > 0 && is_enough(tree, budget.seconds, start, descents, first))) break;
+          const bool has_searched = descents > 0 || first >= 0;  // a decision is never made blindly
+          if (is_over() || (budget.seconds > 0 && has_searched && is_enough(tree, budget.seconds, start, descents, first))) break;
         }
         ++descents;
         auto state = start_state(random);
