@@ -11,10 +11,10 @@ from processes import HANG_S, descendants, has_listener, is_running, kill, until
 from ssh_host import stand_in
 from supervised_system import System, command, small
 
-from aos_deploy.processes import supervisor as supervisor_module
+from aos_deploy.processes import silences as silences_module
 from aos_deploy.processes.program import Program
 from aos_deploy.processes.restarts import STARTS
-from aos_deploy.processes.supervisor import FROZEN_S
+from aos_deploy.processes.silences import FROZEN_S
 from aos_protocol.errors import AosError, DeployError, DocumentError
 
 NAMES = ("registry", "middleware", "skills", "solver")
@@ -190,7 +190,7 @@ async def test_a_frozen_command_on_another_host_starts_again_and_its_silence_is_
 
 
 async def test_a_command_that_runs_and_serves_nothing_is_told_and_can_be_ended(system: System, monkeypatch):
-    monkeypatch.setattr(supervisor_module, "FROZEN_S", 0.1)
+    monkeypatch.setattr(silences_module, "FROZEN_S", 0.1)
     async with (
         asyncio.timeout(HANG_S),
         system.up(command("python", "small_command.py", is_restarted=True)) as supervisor,

@@ -37,6 +37,10 @@ class RunningProgram:
         self.silence: asyncio.Task[None] | None = None
         self.silent_since_s = 0.0
 
+    def end_at_once(self) -> None:
+        """Ends the process, and what it has started, without asking."""
+        (self.child.end_at_once if self.program.is_guarded else self.child.kill)()
+
 
 def consequence(
     running: RunningProgram, status: int, others: Iterable[RunningProgram], run: RunDirectory, now_s: float

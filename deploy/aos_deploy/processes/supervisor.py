@@ -7,7 +7,7 @@ service, the first path that a command serves. They are stopped in the reverse o
 
 A service that ends before it is told to ends the supervision with the fault it left, unless its program says
 that it may be started again. One that is frozen, which a program of the user's own may be by SIGSTOP alone,
-is killed. `_watch` is the only place that sees a service end.
+is killed (`silences.py`). `_watch` is the only place that sees a service end.
 """
 
 from __future__ import annotations
@@ -36,6 +36,7 @@ from aos_deploy.processes.program import Program
 from aos_deploy.processes.ready import Before, before_start, check_port_is_free, until_seen_ready
 from aos_deploy.processes.remote import is_lost, was_frozen
 from aos_deploy.processes.returns import Returns
+from aos_deploy.processes.silences import Silences
 from aos_deploy.processes.start import ROUTER_MODULE, start_process
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.summary import ProcessEnd
@@ -54,10 +55,6 @@ ROUTER = Program(name="router", module=ROUTER_MODULE, start_s=ROUTER_S, is_resta
 
 T = TypeVar("T")
 
-FROZEN_S = 5.0
-"""A process of ours that is off the bus for so long, after it was ready, is killed."""
-
-_SILENT = "it runs, and has served nothing for {:g} s; kill {} ends it, and it is started again"
 _CANCEL_TIMEOUT_S = 2.5
 _TOLD_S = 1.0
 """An end that takes longer is told with what is waited for."""
@@ -128,6 +125,15 @@ class Supervisor:
         self._bus: Bus | None = None
         self._returns: Returns | None = None
         self._serving: set[str] = set()
+        self._silences = Silences(
+            self._running,
+            ROUTER.name,
+            self._serving,
+            clock,
+            is_routed=lambda: self.bus.is_routed,
+            beside=self._beside,
+            changed=self._changed,
+        )
         self._besides: list[asyncio.Task[None]] = []
         self._have_started = asyncio.Event()
         self.ends: list[ProcessEnd] = []
@@ -292,65 +298,13 @@ class Supervisor:
         """A service has left the bus, or a program of the user's own a path: it ends, or it is frozen."""
         running.is_ready = running.is_ready and serves_less
         if running.program.is_restarted and running.silence is None:
-            running.silent_since_s = self._clock.monotonic_s()
-            look = self._kill_if_stopped if serves_less else self._kill_if_frozen
-            running.silence = self._beside(look(running))
+            self._silences.begin(running, serves_less=serves_less)
             if not serves_less:
                 self._tell_return(running.program, it_comes=True)
 
     def _tell_return(self, program: Program, *, it_comes: bool) -> None:
         if self._returns is not None:  # Before there is a bus nobody decides.
             self._returns.expect(program) if it_comes else self._returns.settle(program.name)
-
-    async def _kill_if_stopped(self, running: RunningProgram) -> None:
-        """Kills a user's own program that SIGSTOP has stopped, and tells of one that serves nothing."""
-        child = running.child
-        await asyncio.sleep(FROZEN_S)
-        if not running.program.host and not child.is_frozen() and not self.bus.is_routed:
-            await self._until_routed(running)  # The router is silent: the program may be well.
-        running.silence = None
-        if running.child is child and running.program.host:
-            child.stdin.write(b"look\n")  # Its end says what was seen there.
-        elif running.child is child and child.is_frozen():
-            self._kill_frozen(running)
-        elif running.child is child and child.returncode is None:
-            name, paths = running.program.name, running.program.paths
-            if paths and self._serving.isdisjoint(paths):
-                self._changed(name, "silent", _SILENT.format(FROZEN_S, child.pid))
-
-    async def _kill_if_frozen(self, running: RunningProgram) -> None:
-        child = running.child
-        await self._until_routed(running)
-        running.silence = None
-        if running.child is child and self._running[ROUTER.name].is_ready:
-            self._kill_frozen(running)
-
-    async def _until_routed(self, silent: RunningProgram) -> None:
-        """Waits for as long as a process may be silent, and for a router that carries what is said.
-
-        One that carries nothing is killed: we are not heard either, and those behind it may be well.
-        """
-        router = self._running[ROUTER.name]
-        is_routed = False
-        while not is_routed:
-            await asyncio.sleep(FROZEN_S)
-            # Without a router nobody is heard, and with a new one not at once.
-            if self._clock.monotonic_s() - router.started_s < 2 * FROZEN_S:
-                await asyncio.sleep(FROZEN_S)
-            is_routed = self.bus.is_routed
-            if not is_routed and router.is_ready:
-                router.silent_since_s = silent.silent_since_s
-                self._kill_frozen(router)
-
-    def _kill_frozen(self, running: RunningProgram) -> None:
-        if running.child.returncode is None:
-            running.is_ready = False
-            self._is_frozen(running)
-            _end_at_once(running)
-
-    def _is_frozen(self, running: RunningProgram) -> None:
-        silent_s = self._clock.monotonic_s() - running.silent_since_s
-        self._changed(running.program.name, "frozen", f"off the bus for {silent_s:.1f} s; it is killed")
 
     def _set_ready(self, running: RunningProgram, state: str = "ready") -> None:
         if running.silence is not None:
@@ -370,7 +324,7 @@ class Supervisor:
             if self._is_stopping:
                 return
             if was_frozen(program, status):
-                self._is_frozen(running)
+                self._silences.tell_frozen(running)
                 status = -signal.SIGKILL
             if running.seeking is not None:
                 running.seeking.cancel()
@@ -423,7 +377,7 @@ class Supervisor:
         """Ends every process at once; what they have started ends with them."""
         self._is_stopping = True
         for running in self._running.values():
-            _end_at_once(running)
+            running.end_at_once()
 
     async def _stop_one(self, name: str) -> None:
         running = self._running.get(name)
@@ -455,10 +409,6 @@ class Supervisor:
     def _changed(self, service: str, state: str, detail: str = "") -> None:
         after_s = self._clock.monotonic_s() - self._started_s
         self._report(ServiceChanged(service, state, round(after_s, 3), detail))
-
-
-def _end_at_once(running: RunningProgram) -> None:
-    (running.child.end_at_once if running.program.is_guarded else running.child.kill)()
 
 
 def _folder_of(program: Program) -> Path:
