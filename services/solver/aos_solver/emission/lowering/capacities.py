@@ -8,14 +8,14 @@ import msgspec
 
 from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Access, Call, Cpp, Declaration, Mention, strip_comments
-from aos_solver.emission.lowering.other_names import (
+from aos_solver.emission.lowering.type_texts import SORTED, arguments, indexed_type, normal_type
+from aos_solver.emission.lowering.vector_aliases import (
     GROWING,
     SIZING,
     aliases_of,
     fills_what_is_unclear,
     in_place_of_each_other,
 )
-from aos_solver.emission.lowering.type_texts import SORTED, arguments, indexed_type, normal_type
 from aos_solver.emission.lowering.written_lists import bracketed_parts, made_of, whole_number
 
 GROWING_CAPACITY = 64
