@@ -6,6 +6,7 @@ from enum import StrEnum
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_editor.checking import shown_files
 from aos_language.assembly import Assembly, assemble
@@ -176,7 +177,7 @@ def _declarations(assembly: Assembly) -> Iterator[Occurrence]:
 def _blocks(assembly: Assembly) -> Iterator[tuple[str, Block]]:
     """All model code, with the skill or the monitor it belongs to."""
     if (environment := assembly.environment) is not None:
-        others = msgspec.structs.replace(environment, monitors=())
+        others = replace(environment, monitors=())
         yield from (("", block) for block in environment_blocks(others))
         for monitor in environment.monitors:
             yield from ((monitor.name, block) for block in assignment_blocks(MONITOR, monitor.code))
@@ -292,7 +293,7 @@ def _mappings(assembly: Assembly, scope: Scope) -> Iterator[Occurrence]:
                 prefix = "state." if assignment.path.startswith("state.") else ""
                 name = assignment.path.removeprefix(prefix).split(".")[0]
                 column = assignment.span.column + len(prefix)
-                span = msgspec.structs.replace(assignment.span, column=column)
+                span = replace(assignment.span, column=column)
                 if name in scope.variables:
                     yield Occurrence(Symbol(SymbolKind.VARIABLE, name), span)
         for variable in mapping.local_variables:

@@ -4,8 +4,8 @@ import hashlib
 import math
 from pathlib import Path
 
-import msgspec
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from aos_lab.formats.problem_files import read_problem
@@ -30,7 +30,7 @@ class ProblemPlayer:
         """Raises DocumentError for a file with mistakes, AOS322 for another file's policy."""
         header = policy.header
         policy.check_model(hashlib.sha256(path.read_bytes()).hexdigest(), {})
-        model = msgspec.structs.replace(read_problem(path), discount=header.discount)
+        model = replace(read_problem(path), discount=header.discount)
         if header.stop_value is not None:
             model = with_stopping(model, header.stop_value)
         self.step_limit = step_limit or _steps_that_count(model.discount)

@@ -6,6 +6,7 @@ A skill without a written mapping gets a derived one. A parameter that is an enu
 from collections.abc import Mapping, Set
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.derived_mapping import derived_mapping
 from aos_language.findings import Findings
@@ -89,9 +90,9 @@ def _with_types_first(model: SkillModel, types: Set[str], findings: Findings) ->
     for each in model.parameters:
         if each.name in types and each.type.isidentifier() and each.type not in types:
             findings.error("AOS104", f"the type comes first: `{each.name} {each.type}`", each.span)
-            each = msgspec.structs.replace(each, name=each.type, type=each.name)
+            each = replace(each, name=each.type, type=each.name)
         parameters.append(each)
-    return msgspec.structs.replace(model, parameters=tuple(parameters))
+    return replace(model, parameters=tuple(parameters))
 
 
 def _without_duplicates(

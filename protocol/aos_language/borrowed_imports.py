@@ -7,7 +7,7 @@ mapping has a module of its own, which takes what it needs from the others.
 import ast
 from collections.abc import Iterable, Iterator
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.assembly import Assembly
 from aos_language.check.mappings.mapping_code import snippets_of_mapping
@@ -41,7 +41,7 @@ def _lent_names(mappings: Iterable[AbstractionMapping]) -> dict[str, Import]:
     for mapping in mappings:
         for imported in mapping.imports:
             for text in imported.names:
-                one = msgspec.structs.replace(imported, names=(text,))
+                one = replace(imported, names=(text,))
                 lent.setdefault(imported_name(text), one)
     lent.pop("*", None)
     return lent
@@ -61,8 +61,8 @@ def _names_read(mapping: AbstractionMapping) -> Iterator[tuple[str, Span]]:
 
 def _borrowing(mapping: AbstractionMapping, imports: Iterable[Import]) -> AbstractionMapping:
     activation = mapping.activation
-    more = msgspec.structs.replace(activation, imports=(*activation.imports, *imports))
-    return msgspec.structs.replace(mapping, activation=more)
+    more = replace(activation, imports=(*activation.imports, *imports))
+    return replace(mapping, activation=more)
 
 
 def _warn(missing: dict[str, Span], lent: dict[str, Import], findings: Findings) -> None:

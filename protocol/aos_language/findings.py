@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.diagnostics import Diagnostic, Mend, Severity, Span, has_errors
 from aos_protocol.spelling import nearest
@@ -69,7 +69,7 @@ class Findings:
             message = f"there are more than {MAX_OF_A_SEVERITY} of these; the rest is not told"
             diagnostic = Diagnostic(severity, diagnostic.code, message, diagnostic.span)
         excerpt = diagnostic.excerpt or self._excerpt(diagnostic.span)
-        self._diagnostics.append(msgspec.structs.replace(diagnostic, excerpt=excerpt))
+        self._diagnostics.append(replace(diagnostic, excerpt=excerpt))
 
     def __len__(self) -> int:
         return len(self._diagnostics)

@@ -6,7 +6,7 @@ They are known by their codes, files and names alone. Editors mark each place, a
 from collections.abc import Hashable, Iterable
 from pathlib import PurePath
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.diagnostics import Diagnostic, Span
 
@@ -96,4 +96,4 @@ def _with_places(first: Diagnostic, others: list[Span]) -> Diagnostic:
         return first
     more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
     hint = f"{first.hint} Also: {', '.join([*lines][:_SHOWN])}{more}".strip()
-    return msgspec.structs.replace(first, hint=hint, mend=None)
+    return replace(first, hint=hint, mend=None)

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.archive import is_archive_name, read_archive
 from aos_language.assembly import Assembly, assemble
@@ -114,7 +115,7 @@ def _draft(
     mappings = {name: mapping for name, mapping in assembly.mappings.items() if name in models}
     known = {model.name for model in assembly.environment.monitors} if assembly.environment else ()
     monitors = {name: mapping for name, mapping in assembly.monitors.items() if mapping.monitor in known}
-    draft = msgspec.structs.replace(assembly, models=models, mappings=mappings, monitors=monitors)
+    draft = replace(assembly, models=models, mappings=mappings, monitors=monitors)
     return draft.project()
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol import messages
 from aos_protocol.access import OPERATOR, WATCHER, Party
@@ -185,7 +186,7 @@ class AosClient(SteeringQuestions):
             Diagnostic(Severity.WARNING, "AOS505", f"nobody can run it now: {why}", Span(skill), _TO_BIND)
             for skill, why in away.items()
         )
-        return msgspec.structs.replace(report, diagnostics=(*report.diagnostics, *warnings))
+        return replace(report, diagnostics=(*report.diagnostics, *warnings))
 
     async def catalogue(self) -> messages.Catalogue:
         """The projects that the registry holds."""
@@ -230,7 +231,7 @@ class AosClient(SteeringQuestions):
 
     async def what_if(self, query: messages.WhatIfQuery, *, mission: int | None = None) -> messages.WhatIf:
         """The decision of a step under other circumstances; errors as from `why`."""
-        query = msgspec.structs.replace(query, mission=await self._named(mission))
+        query = replace(query, mission=await self._named(mission))
         return await self._ask(self.keys.study_whatif, query, messages.WhatIf, STUDY_TIMEOUT_S)
 
     async def tree(self, query: messages.TreeQuery) -> messages.DecisionTree:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.deployment.constraints import constrained
 from aos_deploy.deployment.folder import deploy_file_at, deploy_files_in
@@ -35,8 +36,8 @@ class BundledFiles(msgspec.Struct, frozen=True):
         bundle = self.bundles.get(diagnostic.span.file)
         if bundle is None:
             return diagnostic
-        span = msgspec.structs.replace(diagnostic.span, file=str(from_here(bundle) / diagnostic.span.file))
-        return msgspec.structs.replace(diagnostic, span=span)
+        span = replace(diagnostic.span, file=str(from_here(bundle) / diagnostic.span.file))
+        return replace(diagnostic, span=span)
 
 
 def files_of_bundles(bundles: tuple[Path, ...], leave_out: tuple[str, ...]) -> BundledFiles:

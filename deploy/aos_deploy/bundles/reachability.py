@@ -1,7 +1,7 @@
 """Goals and preconditions that nothing leads to, and loops that nothing ends: told as warnings, by looking at
 what the actions can do."""
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.bundles.ended_starts import ended_start_findings
 from aos_language.findings import Findings
@@ -89,9 +89,7 @@ def _reached(diagnostic: Diagnostic, cheaper: str) -> Diagnostic:
     """A fault is an error. What only takes too long to look at everything is a warning, with its own hint."""
     severity = Severity.WARNING if cheaper else Severity.ERROR
     message = f"in a state that can be reached: {diagnostic.message}"
-    return msgspec.structs.replace(
-        diagnostic, severity=severity, message=message, hint=cheaper or diagnostic.hint
-    )
+    return replace(diagnostic, severity=severity, message=message, hint=cheaper or diagnostic.hint)
 
 
 def _goal_span(environment: Environment) -> Span | None:

@@ -6,8 +6,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import msgspec
 import typer
+from msgspec.structs import replace
 
 from aos_deploy.commands import steering
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
@@ -148,7 +148,7 @@ def _kept_entries(run: Path) -> tuple[MissionEntry, ...]:
     from aos_solver.mission.records.logbook import entries_of
 
     entries = entries_of(run)
-    return tuple(msgspec.structs.replace(entry, ending=entry.ending or "killed") for entry in entries)
+    return tuple(replace(entry, ending=entry.ending or "killed") for entry in entries)
 
 
 def _line(entry: MissionEntry) -> str:

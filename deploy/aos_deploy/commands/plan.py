@@ -7,6 +7,7 @@ from typing import Annotated, NamedTuple
 
 import msgspec
 import typer
+from msgspec.structs import replace
 
 from aos_deploy import planning_options
 from aos_deploy.bundles.ended_starts import remark_on_start
@@ -128,7 +129,7 @@ async def _searched_decision(engine: Engine, search: Search) -> Decision:
         raise PlanningError(choice.remark, code="AOS303")
     found = choice.plan
     decision = _decision(list(found.actions), found.simulations)
-    return msgspec.structs.replace(
+    return replace(
         decision,
         action=found.best.action,
         value=found.best.q,

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple, NoReturn
 
-import msgspec
 import typer
+from msgspec.structs import replace
 
 from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.deployment.parts import MAX_SEED
@@ -160,13 +160,13 @@ def _with_options(deployment: Deployment, options: UpOptions) -> Deployment:
 
     file, solver = deployment.file, deployment.file.solver
     if options.stay:
-        file = msgspec.structs.replace(file, stay=True)
+        file = replace(file, stay=True)
     if options.seed is not None:
-        file = msgspec.structs.replace(file, solver=msgspec.structs.replace(solver, seed=options.seed))
+        file = replace(file, solver=replace(solver, seed=options.seed))
     if options.listen is not None:
         check_endpoint(options.listen)
-        file = msgspec.structs.replace(file, bus=msgspec.structs.replace(file.bus, listen=options.listen))
-    deployment = msgspec.structs.replace(
+        file = replace(file, bus=replace(file.bus, listen=options.listen))
+    deployment = replace(
         deployment,
         file=file,
         mission_values=(*deployment.mission_values, *values_of_options(options.set_values)),

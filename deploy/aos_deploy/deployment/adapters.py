@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.deployment.adapter_kinds import (
     COMMAND,
@@ -102,14 +103,12 @@ def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[Adapte
             assert kind is not None, "_bound has found it"
             plan = AdapterPlan(name=name, kind_name=name, kind=kind)
         if plan.kind_name == "pybullet" and "world" not in plan.options:
-            plan = msgspec.structs.replace(plan, options=plan.options | {"world": world})
+            plan = replace(plan, options=plan.options | {"world": world})
         if plan.kind_name == COMMAND and "command" not in plan.options:
             findings.error("AOS105", f"the adapter {name} has no command", node.span, _HOW_TO_NAME)
             continue
         elsewhere = tuple(path for path, of in taken.items() if of != name)
-        plans.append(
-            msgspec.structs.replace(plan, bind=paths, serves_others=name == others, elsewhere=elsewhere)
-        )
+        plans.append(replace(plan, bind=paths, serves_others=name == others, elsewhere=elsewhere))
     return tuple(plans)
 
 
@@ -176,7 +175,7 @@ def _plan(name: str, node: YamlNode, where: Span, findings: Findings) -> Adapter
         findings.error("AOS106", f"adapters.{name}.credential is no file", where, _HOW_TO_SHARE)
         return None
     if kind_name == "class":
-        kind = msgspec.structs.replace(kind, adapter=str(options.pop("class", "")))
+        kind = replace(kind, adapter=str(options.pop("class", "")))
     return AdapterPlan(name=name, kind_name=kind_name, kind=kind, options=options)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.deployment.told_mistakes import findings_of, refuse_errors
 from aos_language.check.constraints import check_constraints
@@ -53,4 +53,4 @@ def constrained(
         where = constraints[MAX_CONSTRAINTS].never.span
         findings.error("AOS142", f"more than {MAX_CONSTRAINTS} constraints", where, "Join some of them by ||")
     refuse_errors(findings, "the mission's constraints have errors")
-    return msgspec.structs.replace(project, constraints=tuple(constraints))
+    return replace(project, constraints=tuple(constraints))

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
-import msgspec
 import typer
+from msgspec.structs import replace
 
 from aos_deploy.deployment.told_mistakes import findings_of, refuse_errors
 from aos_deploy.deployment.yaml_source import YamlList, YamlMap, YamlNode
@@ -37,7 +37,7 @@ def _values(node: YamlNode, findings: Findings, file: str, name: str) -> Iterato
     elif isinstance(node, YamlList):
         findings.error("AOS106", f"set.{name} is a list", node.span, "Give each part of it a value")
     else:
-        span = msgspec.structs.replace(node.text_span, file=file)
+        span = replace(node.text_span, file=file)
         yield MissionValue(name, _text(node.value), span)
 
 
@@ -67,4 +67,4 @@ def with_values(project: Project, values: Sequence[MissionValue], sources: Itera
     findings = findings_of(sources)
     checked_values(values, parameter_leaves(project.environment), findings)
     refuse_errors(findings, "what is set for the mission has errors")
-    return msgspec.structs.replace(project, mission_values=tuple(values))
+    return replace(project, mission_values=tuple(values))

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.deployment.adapters import TAKEN, AdapterPlan, played_by_model, read_adapters
 from aos_deploy.deployment.constraints import snippet_of
@@ -74,21 +75,21 @@ def read_deploy_file(path: Path) -> Deployment:
 
 def without_a_robot(deployment: Deployment, faults: Mapping[str, float] | None = None) -> Deployment:
     """The deployment with every skill played by its document. What runs beside a robot is left out, too."""
-    file = msgspec.structs.replace(deployment.file, programs={})
-    return msgspec.structs.replace(deployment, file=file, adapters=played_by_model(faults))
+    file = replace(deployment.file, programs={})
+    return replace(deployment, file=file, adapters=played_by_model(faults))
 
 
 def with_whole_paths(deployment: Deployment) -> DeployFile:
     """The file with what it leaves to defaults, and with paths that hold in every folder."""
     file, policy = deployment.file, deployment.policy
-    return msgspec.structs.replace(
+    return replace(
         file,
         project=deployment.project,
         bundles=tuple(map(str, deployment.bundles)),
         world=_text(deployment.world),
         watch=_text(deployment.watch),
         runs=str(deployment.runs),
-        solver=msgspec.structs.replace(file.solver, policy=_text(policy)),
+        solver=replace(file.solver, policy=_text(policy)),
     )
 
 
@@ -169,9 +170,7 @@ def _constraints(path: Path, file: DeployFile, node: YamlMap) -> tuple[Constrain
     return tuple(
         Constraint(
             snippet_of(
-                part.never.rstrip(),
-                msgspec.structs.replace(place.text_span, file=str(path)),
-                is_block=place.is_block,
+                part.never.rstrip(), replace(place.text_span, file=str(path)), is_block=place.is_block
             ),
             part.probability,
             part.cost,

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.bundles.files import BundledFiles, files_of_bundles, project_of
 from aos_deploy.deployment.reading import Deployment, with_whole_paths
@@ -62,8 +63,8 @@ class MissionRun(RunOfProcesses):
         is_played: bool = False,
         shows_page: bool = False,
     ) -> None:
-        file = msgspec.structs.replace(deployment.file, stay=self.stays)
-        super().__init__(msgspec.structs.replace(deployment, file=file), report, clock)
+        file = replace(deployment.file, stay=self.stays)
+        super().__init__(replace(deployment, file=file), report, clock)
         self._taken_up = taken_up
         self._shows_page = shows_page
         self._is_played = is_played or (taken_up is not None and taken_up.record.is_played)
@@ -204,7 +205,7 @@ class MissionRun(RunOfProcesses):
         if not report.is_accepted:
             refused = f"bundles {named} are" if "," in named else f"bundle {named} is"
             raise DocumentError(f"the {refused} refused", code="AOS120", diagnostics=found)
-        self._report(msgspec.structs.replace(report, diagnostics=found))
+        self._report(replace(report, diagnostics=found))
 
     async def _follow(self, supervisor: Supervisor) -> None:
         async with asyncio.TaskGroup() as tasks:

@@ -3,6 +3,7 @@
 import asyncio
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.deployment.reading import Deployment
 from aos_deploy.events import Report, Told
@@ -63,7 +64,7 @@ class ServeRun(RunOfProcesses):
         self._ros2 = endpoint
         settings = self._server.settings
         options = settings["options"] | {"router": endpoint}
-        self._server = msgspec.structs.replace(self._server, settings=settings | {"options": options})
+        self._server = replace(self._server, settings=settings | {"options": options})
 
     async def _serve(self, run: RunDirectory, endpoint: str) -> None:
         deployment = self._deployment

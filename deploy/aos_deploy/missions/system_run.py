@@ -4,6 +4,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.events import Event, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error
@@ -88,7 +89,7 @@ class SystemRun(MissionRun):
             folder, self._heard, stopped_by=stopped_by, was_interrupted=was_interrupted, mission=entry.mission
         )
         self.error = self.error or lacking
-        summary = msgspec.structs.replace(
+        summary = replace(
             self._summary(verdict, folder),
             seed=entry.seed,
             started=time_text(entry.begun_ns),

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.deployment.reading import Deployment, read_deploy_file, without_a_robot
 from aos_deploy.history_check.check import MIDDLEWARE
@@ -48,13 +49,13 @@ def take_up(path: Path) -> tuple[Deployment, TakenUp]:
         deployment = without_a_robot(deployment)
     file = deployment.file
     is_port = record.endpoint.startswith("tcp/")
-    file = msgspec.structs.replace(
+    file = replace(
         file,
         stay=stays(run.path),
-        solver=msgspec.structs.replace(file.solver, seed=record.seed),
-        bus=msgspec.structs.replace(file.bus, listen=record.endpoint if is_port else ""),
+        solver=replace(file.solver, seed=record.seed),
+        bus=replace(file.bus, listen=record.endpoint if is_port else ""),
     )
-    deployment = msgspec.structs.replace(deployment, file=file, runs=run.path.parent)
+    deployment = replace(deployment, file=file, runs=run.path.parent)
     return deployment, TakenUp(run, record, has_begun)
 
 

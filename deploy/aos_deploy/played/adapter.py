@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.played.faults import FAILED_CALL, LOST_RESULT, NO_ANSWER, PlayedFaults
 from aos_deploy.played.worlds import PlayedStep, PlayedWorld, bring_to, steps_in, worlds_of
@@ -60,7 +61,7 @@ class ModelAdapter:
 
     async def start(self) -> None:
         """Documents come after everything has started; a model takes its time to be compiled."""
-        self._worlds = [msgspec.structs.replace(self._worlds[0], played=steps_in(self._file))]
+        self._worlds = [replace(self._worlds[0], played=steps_in(self._file))]
         self._following = asyncio.create_task(self._follow())
 
     async def call(self, call: Call) -> Observed:
@@ -125,7 +126,7 @@ class ModelAdapter:
                 numbers = step.numbers
                 monitors = await world.engine.monitor_world()
                 now = self._worlds[-1]
-                self._worlds[-1] = msgspec.structs.replace(now, played=(*now.played, name))
+                self._worlds[-1] = replace(now, played=(*now.played, name))
         with self._worlds[-1].file.open("ab") as file:
             file.write(msgspec.json.encode(played) + b"\n")
         return Observed(played.response, numbers, monitors)
@@ -141,7 +142,7 @@ class ModelAdapter:
 
     async def _adopt(self, revision: ProjectRevision) -> None:
         """Goes over to new documents: the steps so far are played again by them."""
-        project = msgspec.structs.replace(revision.project, mission_values=self._mission_values)
+        project = replace(revision.project, mission_values=self._mission_values)
         built = await build_project(project, self._cache_dir, lambda remark: _log.info("%s", remark))
         engine = await Engine.start(built, seed=self._host.seed, keeps_belief=False)
         async with self._changing:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.played.faults import FAILED_CALL
 from aos_language.mission_parameters import mission_value, usable_values
@@ -121,7 +122,7 @@ async def _seed(engine: Engine, project: Project, world: PlayedWorld, cache_dir:
         return world.seed
     built = await built_with_conditions(project, world.given, cache_dir)
     values = usable_values(world.values, engine.parameters)
-    built = msgspec.structs.replace(built, mission_values=values)
+    built = replace(built, mission_values=values)
     async with await Engine.start(built, seed=world.seed, keeps_belief=False) as aside:
         for draw in range(MAX_DRAWS):
             seed = world.seed + draw * 1_000_003

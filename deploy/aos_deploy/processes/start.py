@@ -7,7 +7,7 @@ import shlex
 import shutil
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.processes.passes import Passes
 from aos_deploy.processes.program import Program, settings_of
@@ -29,7 +29,7 @@ async def start_process(program: Program, base: ServiceSettings, run: RunDirecto
     """
     reach("up.start.before")
     password = "" if program.module == ROUTER_MODULE else str(passes.file(program.user))
-    own = msgspec.structs.replace(base, service=program.name, password_file=password)
+    own = replace(base, service=program.name, password_file=password)
     settings = run.write_settings(program.name, settings_of(program, own))
     environment = {"AOS_ENDPOINT": base.endpoint, "AOS_ROBOT": base.robot, "PYTHONUNBUFFERED": "1"}
     environment |= {USER_VARIABLE: program.user, PASSWORD_FILE_VARIABLE: password}

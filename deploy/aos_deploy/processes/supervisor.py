@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.events import Report, ServiceChanged
 from aos_deploy.processes.consequence import (
@@ -86,7 +87,7 @@ async def supervised(
         "parties": msgspec.to_builtins(passes.parties),
         "ros2": ros2,
     }
-    programs = (msgspec.structs.replace(ROUTER, settings=router), *programs)
+    programs = (replace(ROUTER, settings=router), *programs)
     async with asyncio.TaskGroup() as tasks:
         supervisor = Supervisor(programs, base, run, report, clock, tasks, passes)
         try:
@@ -113,7 +114,7 @@ class Supervisor:
         self.keys = Keys(base.robot)
         self._router, *self._programs = programs
         self._passes = passes
-        self._base = msgspec.structs.replace(base, router_s=MOST_DEADLINES * ROUTER.start_s)
+        self._base = replace(base, router_s=MOST_DEADLINES * ROUTER.start_s)
         self._run = run
         self._report = report
         self._clock = clock

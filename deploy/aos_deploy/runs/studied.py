@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TypeVar
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.places import cache_dir
 from aos_deploy.runs.directory import RunDirectory
@@ -65,7 +66,7 @@ class StudiedRun:
                 f"the settings of the solver in {run} cannot be read: {error}", code="AOS702"
             ) from error
         mission = recorded(rows_of(run / file))
-        return cls(run, mission, msgspec.structs.replace(settings, cache_dir=str(cache_dir())))
+        return cls(run, mission, replace(settings, cache_dir=str(cache_dir())))
 
     async def study(self, ask: Callable[[Study], Awaitable[T]]) -> T:
         """The answer to one question about the mission."""

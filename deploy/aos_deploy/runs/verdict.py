@@ -4,7 +4,7 @@ Exit code, summary and last line are made from it. A run that ended otherwise th
 that `aos-up` has seen as the last row of its journal.
 """
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.exit_codes import ExitCode, exit_code_of_mission
 from aos_deploy.runs.summary import RunEnd
@@ -69,7 +69,7 @@ class Account:
             ending = "fault" if self.has_begun else "not_started"
             changes = {"ending": ending, "remark": str(error), "code": error.code}
         goal = self._belief.goal_probability if self._belief else 0.0
-        return msgspec.structs.replace(state, phase="ended", goal_probability=goal, **changes)
+        return replace(state, phase="ended", goal_probability=goal, **changes)
 
     def verdict(self) -> Verdict:
         """The verdict on what was taken so far."""

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.messages import ActionValue
 
@@ -74,7 +74,6 @@ def proven_texts(value: ActionValue, digits: Digits) -> tuple[str, str]:
 def by_worth(values: Iterable[ActionValue], simulations: int) -> list[ActionValue]:
     """The values, the best first; last those of actions that the search has not tried, as no numbers."""
     known = [
-        value if value.is_known(simulations) else msgspec.structs.replace(value, q=-math.inf, stderr=0.0)
-        for value in values
+        value if value.is_known(simulations) else replace(value, q=-math.inf, stderr=0.0) for value in values
     ]
     return sorted(known, key=lambda value: -value.q)

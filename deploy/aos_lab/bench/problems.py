@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.places import cache_dir, shipped
 from aos_lab.bench.rocksamples import LAYOUTS, write_bundle
@@ -62,4 +63,4 @@ def _with_documents(problem: Problem) -> Problem:
         return problem
     folder = cache_dir() / "bundles" / problem.name
     write_bundle(problem.name, folder)
-    return msgspec.structs.replace(problem, bundle=folder)
+    return replace(problem, bundle=folder)

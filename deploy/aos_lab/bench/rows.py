@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol import __version__
 from aos_runtime.distribution import version_of
@@ -79,10 +80,7 @@ def with_ratios(rows: Iterable[Row]) -> tuple[Row, ...]:
             for other in rows
             if row.name == OURS != other.name and (other.problem, other.metric) == (row.problem, row.metric)
         ]
-        compared += [
-            msgspec.structs.replace(row, against=other.name, ratio=row.value / other.value)
-            for other in others
-        ]
+        compared += [replace(row, against=other.name, ratio=row.value / other.value) for other in others]
         if not others:
             compared.append(row)
     return tuple(compared)

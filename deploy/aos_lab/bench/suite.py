@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_lab.bench import baseline, pomdp_py_peer
 from aos_lab.bench.measure import discounted_returns, sampling_rate, search_rate, threaded_search_rates
@@ -175,7 +176,7 @@ class Suite:
                 row = figure(baseline.NAME, problem.name, metric, [turn.value for turn in turns], "1/s")
                 self._rows.append(row)
                 if metric == "steps" and self._has(problem, STEPS_BY_CODE):
-                    self._rows.append(msgspec.structs.replace(row, metric=STEPS_BY_CODE))
+                    self._rows.append(replace(row, metric=STEPS_BY_CODE))
 
     def _has(self, problem: Problem, metric: str) -> bool:
         return any((row.problem, row.metric) == (problem.name, metric) for row in self._rows)
@@ -202,7 +203,6 @@ def without_policies(project: Project) -> Project:
     """The same documents with random play-outs; the project itself if it has no rollout policies."""
     if not any(skill.model.rollout_policy for skill in project.skills):
         return project
-    replace = msgspec.structs.replace
     skills = [replace(skill, model=replace(skill.model, rollout_policy=())) for skill in project.skills]
     return replace(project, skills=tuple(skills))
 

@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.cpp.keywords import DRAW_SOURCES
 from aos_language.cpp.snippets import Call, Cpp, DeclarationKind, Extent, read_cpp, strip_comments
@@ -70,7 +71,7 @@ def draws_of(project: Project) -> Draws:
     search = _Search(project.environment)
     skills = tuple(search.skill(skill) for skill in project.skills)
     environment = search.environment(project.environment)
-    keeping = msgspec.structs.replace(project, environment=environment, skills=skills)
+    keeping = replace(project, environment=environment, skills=skills)
     return Draws(tuple(search.draws), tuple(search.skipped), keeping)
 
 
@@ -84,23 +85,21 @@ class _Search:
 
     def skill(self, skill: Skill) -> Skill:
         changed = self._section(skill.model.dynamic_model, skill.name, "state__")
-        return msgspec.structs.replace(
-            skill, model=msgspec.structs.replace(skill.model, dynamic_model=changed)
-        )
+        return replace(skill, model=replace(skill.model, dynamic_model=changed))
 
     def environment(self, environment: Environment) -> Environment:
         """Returns the environment with the variables of all draws so far and of its own."""
         extrinsic = self._section(environment.extrinsic_changes, "", "state_")
         before = len(self.draws)
         initial = self._section(environment.initial_belief, "", "state")
-        self.draws[before:] = [msgspec.structs.replace(d, is_initial=True) for d in self.draws[before:]]
+        self.draws[before:] = [replace(d, is_initial=True) for d in self.draws[before:]]
         span = environment.span
         variables = tuple(
             StateVariable(draw.variable, "int", span, default_code=_code(f"state.{draw.variable} = 0;", span))
             for draw in self.draws
         )
         forget = _code(" ".join(f"state_.{draw.variable} = 0;" for draw in self.draws), span)
-        return msgspec.structs.replace(
+        return replace(
             environment,
             variables=(*environment.variables, *variables),
             initial_belief=initial,
@@ -131,8 +130,8 @@ class _Search:
                 self._skip(snippet, call, "its probability is computed, and no number of the document")
             else:
                 edits += self._keep(snippet, cpp, call, weights, skill, copy)
-        changed = msgspec.structs.replace(snippet, code=cpp.replace(edits))
-        return msgspec.structs.replace(assignment, code=changed)
+        changed = replace(snippet, code=cpp.replace(edits))
+        return replace(assignment, code=changed)
 
     def _keep(
         self, snippet: Snippet, cpp: Cpp, call: Call, weights: list[_Weight], skill: str, copy: str

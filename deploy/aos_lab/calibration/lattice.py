@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 import numpy.typing as npt
+from msgspec.structs import replace
 
 from aos_lab.calibration.records import RecordedMission, RecordedStep
 from aos_protocol.errors import AosError, IntractableError
@@ -67,7 +68,7 @@ class Layers:
         """The states that may follow with that response, each with its probability together with it."""
         key = (state, step.action, step.response, repr(step.numbers))
         if key not in self._known:
-            single = msgspec.structs.replace(self._initial, particles=((1.0, state),))
+            single = replace(self._initial, particles=((1.0, state),))
             await self._engine.import_belief(single)
             update = await self._engine.update(step.action, step.response, numbers=step.numbers)
             found: list[tuple[str, float]] = []
@@ -80,7 +81,7 @@ class Layers:
     async def state(self, text: str) -> _State:
         """Returns the values of a state's variables."""
         if text not in self._states:
-            single = msgspec.structs.replace(self._initial, particles=((1.0, text),))
+            single = replace(self._initial, particles=((1.0, text),))
             values = _values(await self._engine.import_belief(single))
             drawn = tuple(int(values.get(variable, "0")) for variable in self._variables)
             self._states[text] = _State(values, drawn)

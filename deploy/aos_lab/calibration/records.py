@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.export.run_bundle import SUFFIX, opened_bundle
 from aos_deploy.printing import from_here
@@ -82,7 +83,7 @@ def _of_file(path: Path) -> Iterator[RecordedMission]:
         recorded: list[tuple[str, str, dict[str, Any]]] = [
             (action, response, {}) for action, response in zip(trial.actions, trial.responses, strict=True)
         ]
-        yield msgspec.structs.replace(
+        yield replace(
             _mission(f"{from_here(path.parent)}, seed {seed}", recorded, trial.states),
             seed=seed,
             mission_parameters=trial.mission_parameters,
@@ -106,7 +107,7 @@ def _of_run(run: Path, name: str) -> RecordedMission:
     mission = _mission(name, recorded, truth_lines(run))
     if begun is None:
         return mission
-    return msgspec.structs.replace(mission, mission_parameters=begun.mission_parameters)
+    return replace(mission, mission_parameters=begun.mission_parameters)
 
 
 def _mission(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import msgspec
 import typer
+from msgspec.structs import replace
 
 from aos_deploy import planning_options
 from aos_deploy.bundles.files import Planned, planned_of
@@ -76,7 +77,7 @@ class MissionOptions(NamedTuple):
         """The limits that are given, and for the rest those of the deploy file."""
         given = {name: value for name, value in self._asdict().items() if value is not None}
         del given["runs"]
-        return msgspec.structs.replace(planned.limits or MissionLimits(), **given)
+        return replace(planned.limits or MissionLimits(), **given)
 
 
 @command("Example: aos simulate deploy/bundles/armadillo-finer --runs 20")
@@ -165,7 +166,7 @@ async def _play(
         task = bar.add_task("missions", total=runs)
         engine.on_progress = lambda found: bar.update(task, description=f"missions, {found.text}")
         for run_seed in range(search.seed, search.seed + runs):
-            of_run = msgspec.structs.replace(search, seed=run_seed)
+            of_run = replace(search, seed=run_seed)
             done.append(await simulate_mission(engine, of_run, limits, with_states=with_states))
             bar.update(task, description="missions", completed=len(done))
 

@@ -12,6 +12,7 @@ from typing import Annotated, NamedTuple
 
 import msgspec
 import typer
+from msgspec.structs import replace
 from rich.progress import BarColumn, TextColumn
 
 from aos_deploy.bundles.engine import engine_of_bundle
@@ -153,7 +154,7 @@ def solve(
         values = values_of_options(set_values)
         found = asyncio.run(_enumerated(target, solving, values, is_exported=bool(exports)))
     if solving.stop_value is not None:
-        found = msgspec.structs.replace(found, model=with_stopping(found.model, solving.stop_value))
+        found = replace(found, model=with_stopping(found.model, solving.stop_value))
     limits = SolvingLimits(precision=solving.precision, cpu_s=solving.time_s)
     for path in exports:
         write_problem(found.model, path)
@@ -196,7 +197,7 @@ def _problem(path: Path, max_states: int, discount: float | None) -> _Target:
             path, max_states=max_states, on_progress=lambda known: on_progress(Listed(known, known))
         )
     if discount is not None:
-        model = msgspec.structs.replace(model, discount=discount)
+        model = replace(model, discount=discount)
     return _Target(model, hashlib.sha256(path.read_bytes()).hexdigest(), model.states)
 
 

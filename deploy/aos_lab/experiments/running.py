@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_lab.calibration.calibrate import calibrate
 from aos_lab.calibration.records import RecordedMission, read_missions
@@ -41,7 +42,7 @@ class ExperimentRun(msgspec.Struct, frozen=True):
     def _result(self, name: str, by: Player, number: int, on_trial: Callable[[], None]) -> PartResult:
         part: Part = self.experiment.parts[name]
         # Faults are the simulated world's; the model's world has none.
-        setting = msgspec.structs.replace(part, by=by, faults={} if by == "model" else part.faults)
+        setting = replace(part, by=by, faults={} if by == "model" else part.faults)
         seeds = range(self.first_seed, self.first_seed + number)
         out = self.folder / by / name
         played = asyncio.run(
@@ -54,11 +55,11 @@ class ExperimentRun(msgspec.Struct, frozen=True):
             try:
                 optimum = _known_optimum(out, played.digest, setting, self.path.parent)
             except IntractableError as error:
-                return msgspec.structs.replace(result, no_optimum=error.message)
-            return msgspec.structs.replace(result, regret=regret_of(optimum, played.trials))
+                return replace(result, no_optimum=error.message)
+            return replace(result, regret=regret_of(optimum, played.trials))
         target = self.folder / "pictures" / f"{name}.webp"
         if by == "system" and keep_picture(out / "runs", result.seeds, target):
-            return msgspec.structs.replace(result, picture=str(target.relative_to(self.folder)))
+            return replace(result, picture=str(target.relative_to(self.folder)))
         return result
 
 
@@ -90,7 +91,7 @@ def statistics_of(
     runs: dict[str, _ScriptRun] = {}
     for name, part in file.parts.items():
         number = part.missions * repeat
-        setting = msgspec.structs.replace(part, by="system")
+        setting = replace(part, by="system")
         # No two scripts have the same seeds.
         seeds = range(first_seed, first_seed + number)
         first_seed += number

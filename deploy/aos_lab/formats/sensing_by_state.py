@@ -2,6 +2,7 @@
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from aos_solver.offline.explicit_model import ExplicitModel, Integers, Ragged, StartBelief
@@ -58,7 +59,7 @@ def _split(model: ExplicitModel, action: Integers, is_split: NDArray[np.bool_]) 
     lengths = np.diff(model.outcomes.first)[copied_rows]
     elements = _ranges(model.outcomes.first[copied_rows], lengths)
     outcomes = Ragged(np.r_[0, np.cumsum(lengths)], target[elements], model.outcomes.probabilities[elements])
-    copies = msgspec.structs.replace(
+    copies = replace(
         model,
         states=tuple(model.states[s] for s in originals),
         rewards=model.rewards[originals],

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Protocol
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.bundles.files import files_of_bundle
 from aos_deploy.deployment.reading import Deployment
@@ -67,7 +68,7 @@ async def play_campaign(
     """
     deployment = deployment_of(setting, folder, out)
     values = (*deployment.mission_values, *mission_values)
-    deployment = msgspec.structs.replace(deployment, mission_values=values)
+    deployment = replace(deployment, mission_values=values)
     world = world_deployment_of(setting, deployment, folder) if setting.by == "model" else None
     digest = _digest(setting, deployment, world)
     records = out / "missions.jsonl"

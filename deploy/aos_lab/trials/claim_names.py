@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.bundles.files import project_of
 from aos_deploy.deployment.reading import read_deploy_file
@@ -37,10 +37,8 @@ def project_of_setting(deploy: str, bundles: tuple[str, ...], folder: Path) -> P
         if deployment.watch is not None:
             return None
         paths = tuple(folder / bundle for bundle in bundles) or deployment.bundles
-        file = msgspec.structs.replace(deployment.file, leave_out=())
-        return project_of(
-            msgspec.structs.replace(deployment, bundles=paths, file=file, constraints=(), mission_values=())
-        )
+        file = replace(deployment.file, leave_out=())
+        return project_of(replace(deployment, bundles=paths, file=file, constraints=(), mission_values=()))
     except (AosError, OSError):
         return None
 

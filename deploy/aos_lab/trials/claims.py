@@ -10,6 +10,7 @@ from fnmatch import fnmatchcase
 from typing import Annotated, Any, Literal
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_lab.trials.intervals import Interval, interval_of_share
 from aos_lab.trials.trial import Trial
@@ -130,7 +131,7 @@ def has_check(claim: Claim) -> bool:
 def asking_the_world(claim: Claim, by: str, truth: str) -> Claim:
     """The same claim, which asks the world whether the goal was reached: a system knows its belief alone."""
     is_believed = by != "model" and truth and claim.goal and claim.last_state is None
-    return msgspec.structs.replace(claim, last_state=truth) if is_believed else claim
+    return replace(claim, last_state=truth) if is_believed else claim
 
 
 def judge(claim: Claim, trials: Sequence[Trial], by: str = "model") -> Verdict:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from contextlib import AsyncExitStack
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.bundles.files import project_of
 from aos_deploy.deployment.reading import Deployment
@@ -68,7 +69,7 @@ class ModelPlayer:
     async def play(self, seed: int) -> Trial:
         """One mission. The same seed gives the same mission wherever the budget is one in simulations."""
         start = time.perf_counter()
-        search = msgspec.structs.replace(self.missions.search, seed=seed)
+        search = replace(self.missions.search, seed=seed)
         async with AsyncExitStack() as engines:
             engine = await Engine.start(self.model, seed=seed)
             engines.push_async_callback(engine.close)

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
+from msgspec.structs import replace
 from ruamel.yaml import YAML
 
 from aos_deploy.bundles.files import project_of
@@ -51,21 +52,21 @@ def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:
     """
     deployment = read_deploy_file(folder / setting.deploy)
     check_sandbox(deployment)
-    file = msgspec.structs.replace(deployment.file, bus=BusPart(listen="tcp/127.0.0.1:0"))
+    file = replace(deployment.file, bus=BusPart(listen="tcp/127.0.0.1:0"))
     if setting.simulations is not None:
-        solver = msgspec.structs.replace(file.solver, simulations=setting.simulations, time_s=None)
-        file = msgspec.structs.replace(file, solver=solver)
+        solver = replace(file.solver, simulations=setting.simulations, time_s=None)
+        file = replace(file, solver=solver)
     if setting.step_limit is not None:
-        mission = msgspec.structs.replace(file.mission, step_limit=setting.step_limit)
-        file = msgspec.structs.replace(file, mission=mission)
+        mission = replace(file.mission, step_limit=setting.step_limit)
+        file = replace(file, mission=mission)
     if setting.unconstrained:
-        file = msgspec.structs.replace(file, mission=msgspec.structs.replace(file.mission, constraints=()))
-        deployment = msgspec.structs.replace(deployment, constraints=())
+        file = replace(file, mission=replace(file.mission, constraints=()))
+        deployment = replace(deployment, constraints=())
     values = values_of_mapping(setting.set, Span("set"))
-    deployment = msgspec.structs.replace(deployment, mission_values=(*deployment.mission_values, *values))
+    deployment = replace(deployment, mission_values=(*deployment.mission_values, *values))
     if setting.bundles:
-        deployment = msgspec.structs.replace(deployment, bundles=_named(setting.bundles, folder))
-    deployment = msgspec.structs.replace(deployment, file=file)
+        deployment = replace(deployment, bundles=_named(setting.bundles, folder))
+    deployment = replace(deployment, file=file)
     if setting.by == "system-model":
         if setting.faults:
             PlayedFaults(setting.faults).check(skill.name for skill in project_of(deployment).skills)
@@ -79,7 +80,7 @@ def world_deployment_of(setting: Setting, deployment: Deployment, folder: Path) 
     """The deployment whose documents play the world in missions of the model, where it is another one."""
     if not setting.world_bundles:
         return None
-    return msgspec.structs.replace(deployment, bundles=_named(setting.world_bundles, folder))
+    return replace(deployment, bundles=_named(setting.world_bundles, folder))
 
 
 def _named(names: tuple[str, ...], folder: Path) -> tuple[Path, ...]:
@@ -106,9 +107,9 @@ def _with_faults(deployment: Deployment, setting: Setting, out: Path) -> Deploym
     with changed.open("w", encoding="utf-8") as file:
         yaml.dump(world, file)
     adapters = tuple(
-        msgspec.structs.replace(plan, options=plan.options | {"world": str(changed)})
+        replace(plan, options=plan.options | {"world": str(changed)})
         if plan.options.get("world") == str(deployment.world)
         else plan
         for plan in deployment.adapters
     )
-    return msgspec.structs.replace(deployment, world=changed, adapters=adapters)
+    return replace(deployment, world=changed, adapters=adapters)

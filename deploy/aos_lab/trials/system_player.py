@@ -4,7 +4,7 @@ import asyncio
 import shutil
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.deployment.reading import Deployment
 from aos_deploy.missions.mission_run import MissionRun
@@ -35,8 +35,8 @@ class SystemPlayer:
         runs = self._runs / f"seed-{seed}"
         shutil.rmtree(runs, ignore_errors=True)
         file = self.deployment.file
-        file = msgspec.structs.replace(file, solver=msgspec.structs.replace(file.solver, seed=seed))
-        deployment = msgspec.structs.replace(self.deployment, file=file, runs=runs)
+        file = replace(file, solver=replace(file.solver, seed=seed))
+        deployment = replace(self.deployment, file=file, runs=runs)
         mission = MissionRun(deployment, lambda event: None, SystemClock())
         try:
             summary = await asyncio.wait_for(mission.run(), MISSION_S)

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Collection, Iterator
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.nodes import below, child_of, field_of, operator_of, text_of
 from aos_language.cpp.tree import tree_of
@@ -35,7 +35,7 @@ def without_null(code: str, null: Collection[str]) -> str:
     return data.decode()[len(_BEFORE) : -2]
 
 
-def _never_run(node: tree_sitter.Node, null: Collection[str]) -> Iterator[tuple[int, int, str]]:
+def _never_run(node: Node, null: Collection[str]) -> Iterator[tuple[int, int, str]]:
     """The bytes below a node that never run, with what stands in their place."""
     match node.type:
         case "compound_statement":
@@ -69,7 +69,7 @@ def _never_run(node: tree_sitter.Node, null: Collection[str]) -> Iterator[tuple[
                 yield right.start_byte, right.end_byte, "0"
 
 
-def _truth(node: tree_sitter.Node, null: Collection[str]) -> bool | None:
+def _truth(node: Node, null: Collection[str]) -> bool | None:
     """Returns whether a condition holds; None where it depends on more than the null pointers."""
     match node.type:
         case "condition_clause" | "parenthesized_expression" if len(node.named_children) == 1:

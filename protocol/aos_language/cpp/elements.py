@@ -1,6 +1,6 @@
 """Expressions of C++ that a container has to have an element for: `row[i]`, `row.back()`, `*row.begin()`."""
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.nodes import child_of, field_of, names_of, text_of
 
@@ -9,7 +9,7 @@ _BEGINNINGS = frozenset({"begin", "cbegin", "crbegin", "rbegin"})
 _EXTREMES = frozenset({"max_element", "min_element"})
 
 
-def is_checked(subscript: tree_sitter.Node, indices: tree_sitter.Node) -> bool:
+def is_checked(subscript: Node, indices: Node) -> bool:
     """Returns whether an index must be that of an element: not a key `{1, 2}`, nor `&row[9]`, where one may
     stand just behind the last."""
     outer = subscript.parent
@@ -18,12 +18,12 @@ def is_checked(subscript: tree_sitter.Node, indices: tree_sitter.Node) -> bool:
     return not is_address and len(is_one) == 1 and is_one[0] not in ("initializer_list", "comma_expression")
 
 
-def asks_for_element(function: tree_sitter.Node) -> bool:
+def asks_for_element(function: Node) -> bool:
     """Returns whether a method that is called needs an element, as `row.back` does."""
     return _is_one_of(function, _OF_FILLED)
 
 
-def begun_container(iterator: tree_sitter.Node) -> tree_sitter.Node | None:
+def begun_container(iterator: Node) -> Node | None:
     """The container with a name that needs an element for an iterator to be read: `row` of `row.begin()`, and
     of `max_element(row.begin(), row.end())`."""
     if iterator.type != "call_expression":
@@ -38,17 +38,17 @@ def begun_container(iterator: tree_sitter.Node) -> tree_sitter.Node | None:
     return _named(first) if "ranges" in names else begun_container(first)
 
 
-def root_of(container: tree_sitter.Node) -> tree_sitter.Node:
+def root_of(container: Node) -> Node:
     """The beginning of a container's path: `row` of `row[1].parts`."""
     while container.type in ("field_expression", "subscript_expression"):
         container = child_of(container, "argument")
     return container
 
 
-def _named(container: tree_sitter.Node) -> tree_sitter.Node | None:
+def _named(container: Node) -> Node | None:
     return container if root_of(container).type == "identifier" else None
 
 
-def _is_one_of(function: tree_sitter.Node, methods: frozenset[str]) -> bool:
+def _is_one_of(function: Node, methods: frozenset[str]) -> bool:
     method = names_of(field_of(function, "field"))[-1:]
     return not methods.isdisjoint(method) and text_of(function.children[1]) == "."

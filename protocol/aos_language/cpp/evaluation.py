@@ -1,6 +1,6 @@
 """The order in which C++ expressions read local variables that may have no value yet, and set them."""
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.facts import (
     CHANGING_METHODS,
@@ -28,12 +28,12 @@ class Evaluation:
     """
 
     def __init__(self) -> None:
-        self.found: dict[int, tuple[tree_sitter.Node, str, bool]] = {}
+        self.found: dict[int, tuple[Node, str, bool]] = {}
         self.declared: dict[str, tuple[int, str]] = {}
         self.conditions: list[frozenset[str]] = []
         self.is_trial = False
 
-    def expression(self, node: tree_sitter.Node | None, state: State) -> None:
+    def expression(self, node: Node | None, state: State) -> None:
         """Reads and sets in the order of evaluation, as far as it matters."""
         if node is None or node.type in _NO_READS:
             return
@@ -65,16 +65,14 @@ class Evaluation:
             for child in node.named_children:
                 self.expression(child, state)
 
-    def _sometimes(
-        self, condition: tree_sitter.Node | None, parts: list[tree_sitter.Node | None], state: State
-    ) -> None:
+    def _sometimes(self, condition: Node | None, parts: list[Node | None], state: State) -> None:
         """Parts that run under a condition; what one of them sets counts as set."""
         self.conditions.append(frozenset(name.text for name in names_in(condition)))
         for part in parts:
             self.expression(part, state)
         self.conditions.pop()
 
-    def _assign(self, node: tree_sitter.Node, state: State) -> None:
+    def _assign(self, node: Node, state: State) -> None:
         left, right = field_of(node, "left"), field_of(node, "right")
         while left is not None and left.type == "parenthesized_expression" and left.named_child_count == 1:
             left = left.named_children[0]
@@ -84,7 +82,7 @@ class Evaluation:
         else:
             self.expression(left, state)
 
-    def _call(self, node: tree_sitter.Node, state: State) -> None:
+    def _call(self, node: Node, state: State) -> None:
         function = field_of(node, "function")
         arguments = field_of(node, "arguments")
         name = text_of(function).split("<")[0].removeprefix("std::") if function is not None else ""
@@ -99,18 +97,18 @@ class Evaluation:
             else:
                 self.expression(argument, state)
 
-    def _is_stream(self, node: tree_sitter.Node | None) -> bool:
+    def _is_stream(self, node: Node | None) -> bool:
         """Returns whether the first operand of `text >> first >> second` may be a stream, which sets them."""
         while node is not None and node.type == "binary_expression" and operator_of(node) == ">>":
             node = field_of(node, "left")
         return node is not None and node.type == "identifier" and text_of(node) not in self.declared
 
-    def may_be_set(self, node: tree_sitter.Node | None, state: State) -> None:
+    def may_be_set(self, node: Node | None, state: State) -> None:
         for part in below(node):
             if part.type == "identifier":
                 state.set(text_of(part))
 
-    def _read(self, node: tree_sitter.Node, state: State) -> None:
+    def _read(self, node: Node, state: State) -> None:
         ways = state.unset.get(text_of(node))
         declared = self.declared.get(text_of(node))
         if ways is None or declared is None or self.is_trial:
@@ -120,5 +118,5 @@ class Evaluation:
             self.found.setdefault(declared_at, (node, kind, ways.never))
 
 
-def _is_address(node: tree_sitter.Node) -> bool:
+def _is_address(node: Node) -> bool:
     return node.children[0].type == "&"

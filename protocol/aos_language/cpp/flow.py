@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 import msgspec
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.facts import (
     CHANGING_METHODS,
@@ -133,9 +133,7 @@ class _Reading:
                     seen.add(name)
                     waiting.append(name)
 
-    def statement(
-        self, node: tree_sitter.Node | None, control: _Control, switch_control: _Control | None
-    ) -> None:
+    def statement(self, node: Node | None, control: _Control, switch_control: _Control | None) -> None:
         if node is None or not node.is_named or node.type in _WITHOUT_EFFECT:
             return
         if node.type in _NESTED:
@@ -172,7 +170,7 @@ class _Reading:
 
     # --- statements with parts ---
 
-    def _condition(self, node: tree_sitter.Node | None, control: _Control) -> _Control:
+    def _condition(self, node: Node | None, control: _Control) -> _Control:
         """The control within; what the condition itself does is read as well."""
         if node is None:
             return control
@@ -181,12 +179,12 @@ class _Reading:
         self._no_effects(node, control)
         return control | names_in(node)
 
-    def _loop_condition(self, node: tree_sitter.Node | None, control: _Control) -> _Control:
+    def _loop_condition(self, node: Node | None, control: _Control) -> _Control:
         inner = self._condition(node, control)
         self.looped |= inner
         return inner
 
-    def _for(self, node: tree_sitter.Node, control: _Control) -> None:
+    def _for(self, node: Node, control: _Control) -> None:
         first = field_of(node, "initializer")
         if first is not None and first.type == "declaration":
             self._declaration(first, control)
@@ -198,7 +196,7 @@ class _Reading:
             self._expression(update, inner)
         self.statement(field_of(node, "body"), inner, None)
 
-    def _range_for(self, node: tree_sitter.Node, control: _Control) -> None:
+    def _range_for(self, node: Node, control: _Control) -> None:
         whole = field_of(node, "right")
         declarator = field_of(node, "declarator")
         if whole is None or declarator is None:
@@ -213,7 +211,7 @@ class _Reading:
         self._declare(declarator, inner, is_handle, of=names_in(whole))
         self.statement(field_of(node, "body"), inner, None)
 
-    def _declaration(self, node: tree_sitter.Node, control: _Control) -> None:
+    def _declaration(self, node: Node, control: _Control) -> None:
         for declarator in node.children_by_field_name("declarator"):
             value = field_of(declarator, "value") if declarator.type == "init_declarator" else None
             inner = field_of(declarator, "declarator") if value is not None else declarator
@@ -232,14 +230,12 @@ class _Reading:
                 self._values.add(Name(text_of(inner)))
             self._declare(inner, control | initial, is_handle and not is_value, of=initial)
 
-    def _may_refer(self, kind: tree_sitter.Node | None, declarator: tree_sitter.Node) -> bool:
+    def _may_refer(self, kind: Node | None, declarator: Node) -> bool:
         words = {text_of(part) for part in below(kind)}
         is_hidden = not words.isdisjoint({"decltype", *self._types})
         return is_hidden or any(part.type in _HANDLE_DECLARATORS for part in below(declarator))
 
-    def _declare(
-        self, declarator: tree_sitter.Node, sources: _Control, is_handle: bool, of: frozenset[Name]
-    ) -> None:
+    def _declare(self, declarator: Node, sources: _Control, is_handle: bool, of: frozenset[Name]) -> None:
         """The names that a declarator gives. What is changed through a handle changes what it is made of."""
         for part in below(declarator):
             if part.type != "identifier":
@@ -253,7 +249,7 @@ class _Reading:
 
     # --- expressions ---
 
-    def _expression(self, node: tree_sitter.Node, control: _Control) -> None:
+    def _expression(self, node: Node, control: _Control) -> None:
         if node.type == "parenthesized_expression" and node.named_child_count == 1:
             self._expression(node.named_children[0], control)
         elif node.type == "comma_expression":
@@ -271,11 +267,7 @@ class _Reading:
             self.used |= control | names_in(node)
 
     def _change(
-        self,
-        node: tree_sitter.Node,
-        target: tree_sitter.Node | None,
-        values: Sequence[tree_sitter.Node | None],
-        control: _Control,
+        self, node: Node, target: Node | None, values: Sequence[Node | None], control: _Control
     ) -> None:
         name = _root(target)
         if (
@@ -294,7 +286,7 @@ class _Reading:
         # The target's own name is a source as well, of an update as of an element among others.
         self.flows.append(Flow(name, control | names_in(node)))
 
-    def _no_effects(self, node: tree_sitter.Node, control: _Control) -> None:
+    def _no_effects(self, node: Node, control: _Control) -> None:
         """Notes an effect on the side as a doubt, where a value is expected."""
         if _has_effects(node, self._functions):
             self.used |= control | names_in(node)
@@ -312,12 +304,12 @@ _EFFECTS = frozenset({
 })  # fmt: skip
 
 
-def names_in(node: tree_sitter.Node | None) -> frozenset[Name]:
+def names_in(node: Node | None) -> frozenset[Name]:
     """Every name that stands in a piece of the tree, but for those of types and members."""
     return frozenset(_names_in(node)) if node is not None else frozenset()
 
 
-def _names_in(node: tree_sitter.Node) -> Iterator[Name]:
+def _names_in(node: Node) -> Iterator[Name]:
     waiting = [node]
     while waiting:
         part = waiting.pop()
@@ -337,7 +329,7 @@ def _names_in(node: tree_sitter.Node) -> Iterator[Name]:
             waiting += part.named_children
 
 
-def is_draw(node: tree_sitter.Node) -> bool:
+def is_draw(node: Node) -> bool:
     """Returns whether a piece of the tree is a call such as `AOS.Bernoulli(p)` or
     `AOSUtils::SampleDiscrete(w)`."""
     function = field_of(node, "function") if node.type == "call_expression" else None
@@ -348,7 +340,7 @@ def _name_of_draw(start_byte: int) -> Name:
     return Name(f"draw {start_byte}")
 
 
-def _of_state(node: tree_sitter.Node) -> Name | None:
+def _of_state(node: Node) -> Name | None:
     """The variable behind `state.x`."""
     if picks_member(node):
         return None
@@ -363,12 +355,12 @@ def _of_state(node: tree_sitter.Node) -> Name | None:
 _NUMBERS = frozenset({"bool", "char", "double", "float", "int", "long", "short", "size_t", "unsigned"})
 
 
-def _is_value_type(node: tree_sitter.Node | None) -> bool:
+def _is_value_type(node: Node | None) -> bool:
     """Returns whether a variable of the type, without `&` and `*`, refers to nothing else."""
     return node is not None and text_of(node).split()[-1] in _NUMBERS
 
 
-def _root(node: tree_sitter.Node | None) -> Name | None:
+def _root(node: Node | None) -> Name | None:
     """Returns the name that changes when a place changes: `state__.x[i].y` is a part of `x`."""
     while node is not None:
         if node.type == "identifier":
@@ -387,14 +379,14 @@ def _root(node: tree_sitter.Node | None) -> Name | None:
     return None
 
 
-def _method_of(call: tree_sitter.Node) -> str:
+def _method_of(call: Node) -> str:
     """The name of the method that a call calls; empty where it calls something else."""
     function = field_of(call, "function") if call.type == "call_expression" else None
     field = field_of(function, "field") if function is not None else None
     return text_of(field).split("<")[0] if field is not None else ""
 
 
-def _changed_by_method(node: tree_sitter.Node) -> tree_sitter.Node | None:
+def _changed_by_method(node: Node) -> Node | None:
     """The object of a call such as `x.push_back(y)`, which changes nothing else."""
     method = _method_of(node)
     if method not in CHANGING_METHODS - EXCHANGING_METHODS:
@@ -403,12 +395,12 @@ def _changed_by_method(node: tree_sitter.Node) -> tree_sitter.Node | None:
     return field_of(function, "argument") if function is not None else None
 
 
-def _has_effects(node: tree_sitter.Node, functions: _Functions) -> bool:
+def _has_effects(node: Node, functions: _Functions) -> bool:
     """Returns whether evaluating it may change anything that is named in it."""
     return any(_is_effect(part, functions) for part in below(node))
 
 
-def _is_effect(node: tree_sitter.Node, functions: _Functions) -> bool:
+def _is_effect(node: Node, functions: _Functions) -> bool:
     if node.type == "pointer_expression":
         return node.children[0].type == "&"
     if node.type == "binary_expression" and text_of(node.children[1]) in ("<<", ">>"):
@@ -416,7 +408,7 @@ def _is_effect(node: tree_sitter.Node, functions: _Functions) -> bool:
     return node.type in _EFFECTS or (node.type == "call_expression" and _may_change(node, functions))
 
 
-def _may_change(call: tree_sitter.Node, functions: _Functions) -> bool:
+def _may_change(call: Node, functions: _Functions) -> bool:
     """Returns whether a call may change its object or an argument."""
     function = field_of(call, "function")
     if function is None or function.type == "primitive_type":
@@ -433,7 +425,7 @@ def _may_change(call: tree_sitter.Node, functions: _Functions) -> bool:
     return bool(names_in(field_of(call, "arguments")))
 
 
-def _gives_handle(node: tree_sitter.Node) -> bool:
+def _gives_handle(node: Node) -> bool:
     """Returns whether the value of an expression may be an iterator or a pointer."""
     for part in below(node):
         field = field_of(part, "field") if part.type == "field_expression" else None

@@ -10,7 +10,7 @@ not count.
 import re
 from collections.abc import Iterator, Sequence
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.nodes import below, field_of, field_text, operator_of, text_of
@@ -50,7 +50,7 @@ def counted_conditions(parts: Sequence[Cpp], *, is_expression: bool = False) -> 
     return tuple(_placed(cpp.code, edits, offset) for cpp, edits in zip(parts, reading.edits, strict=True))
 
 
-def _root(cpp: Cpp, is_expression: bool) -> tree_sitter.Node | None:
+def _root(cpp: Cpp, is_expression: bool) -> Node | None:
     if cpp.faults or not cpp.code.isascii() or len(cpp.missing_semicolons) > 1:
         return None
     root = tree_of(_BEFORE[is_expression] + cpp.complete + ("\n);" if is_expression else "\n}"))
@@ -68,7 +68,7 @@ def _placed(code: str, edits: list[tuple[int, int, str]], offset: int) -> Edits:
 class _Reading:
     """One walk back from rewards and goals to what they ask for."""
 
-    def __init__(self, roots: list[tree_sitter.Node]) -> None:
+    def __init__(self, roots: list[Node]) -> None:
         self.count = 0
         self.edits: list[list[tuple[int, int, str]]] = [[] for _ in roots]
         self._nodes = [(number, node) for number, root in enumerate(roots) for node in below(root)]
@@ -93,7 +93,7 @@ class _Reading:
             if _is_positive(right):
                 self._want_place(node, True)
 
-    def want(self, node: tree_sitter.Node, truth: bool) -> None:
+    def want(self, node: Node, truth: bool) -> None:
         """Counts the conditions under which an expression is so."""
         left, right = field_of(node, "left"), field_of(node, "right")
         if node.type == "parenthesized_expression":
@@ -113,7 +113,7 @@ class _Reading:
         elif not self._want_number(node, truth):
             self._count(node, truth)
 
-    def _want_choice(self, node: tree_sitter.Node, truth: bool) -> bool:
+    def _want_choice(self, node: Node, truth: bool) -> bool:
         """Counts what a choice between two values depends on, if one of them is what is wanted."""
         condition = field_of(node, "condition")
         first, second = (field_of(node, name) for name in ("consequence", "alternative"))
@@ -134,7 +134,7 @@ class _Reading:
             elif node.type != "init_declarator":
                 self._want_place(node, truth == literal)
 
-    def _want_number(self, node: tree_sitter.Node, truth: bool) -> bool:
+    def _want_number(self, node: Node, truth: bool) -> bool:
         """Counts what a number is made of that is compared, as `closed == 5`; returns whether it is one."""
         left, right = field_of(node, "left"), field_of(node, "right")
         operator = operator_of(node)
@@ -165,7 +165,7 @@ class _Reading:
                 self._want_sum(value, is_more)
         return True
 
-    def _want_sum(self, node: tree_sitter.Node, more: bool) -> None:
+    def _want_sum(self, node: Node, more: bool) -> None:
         if node.type == "parenthesized_expression":
             self._want_sum(node.named_children[0], more)
         elif node.type == "binary_expression" and operator_of(node) == "+":
@@ -176,7 +176,7 @@ class _Reading:
         elif node.type not in ("identifier", "number_literal"):
             self.want(node, more)
 
-    def _want_place(self, node: tree_sitter.Node, truth: bool) -> None:
+    def _want_place(self, node: Node, truth: bool) -> None:
         """Counts the conditions under which a statement runs; one of them is enough to keep it from that."""
         child = node
         while (parent := child.parent) is not None:
@@ -191,7 +191,7 @@ class _Reading:
                     return
             child = parent
 
-    def _want_no_exit(self, block: tree_sitter.Node, before: tree_sitter.Node) -> None:
+    def _want_no_exit(self, block: Node, before: Node) -> None:
         for statement in block.named_children:
             if statement == before:
                 return
@@ -201,7 +201,7 @@ class _Reading:
             if re.fullmatch(r"\{?\s*(?:return|continue);\s*\}?", text_of(then)):
                 self.want(condition.named_children[-1], False)
 
-    def _drop_break(self, block: tree_sitter.Node) -> None:
+    def _drop_break(self, block: Node) -> None:
         loop = block
         while loop.parent is not None and loop.type not in _LOOPS:
             loop = loop.parent
@@ -209,7 +209,7 @@ class _Reading:
             if statement.type == "break_statement":
                 self._edit(block, statement.start_byte, statement.end_byte, ";")
 
-    def _set(self, name: str) -> Iterator[tuple[tree_sitter.Node, tree_sitter.Node]]:
+    def _set(self, name: str) -> Iterator[tuple[Node, Node]]:
         """The declarations and assignments of a local variable that give it a value."""
         for _, node in self._nodes:
             if node.type == "init_declarator":
@@ -221,7 +221,7 @@ class _Reading:
             if target is not None and value is not None and text_of(target) == name:
                 yield node, value
 
-    def _count(self, node: tree_sitter.Node, truth: bool) -> None:
+    def _count(self, node: Node, truth: bool) -> None:
         if node.id in self._counted or re.search(r"\bAOS|\[[=&\w, ]*\]\s*\(", text_of(node)):
             return
         if node.type in ("true", "false", "number_literal", *_MAY_FAIL[1:3]):
@@ -231,26 +231,26 @@ class _Reading:
         self._edit(node, node.start_byte, node.start_byte, f"aos_effect.{'holds' if truth else 'fails'}(")
         self._edit(node, node.end_byte, node.end_byte, ")")
 
-    def _edit(self, node: tree_sitter.Node, start: int, end: int, text: str) -> None:
+    def _edit(self, node: Node, start: int, end: int, text: str) -> None:
         edits = self.edits[self._numbers[node.id]]
         if (start, end, text) not in edits or end == start:
             edits.append((start, end, text))
 
 
-def _declared(node: tree_sitter.Node) -> Iterator[str]:
+def _declared(node: Node) -> Iterator[str]:
     if node.type == "declaration":
         for declarator in node.children_by_field_name("declarator"):
             inner = field_of(declarator, "declarator")
             yield text_of(inner if inner is not None else declarator)
 
 
-def _is_positive(node: tree_sitter.Node) -> bool:
+def _is_positive(node: Node) -> bool:
     """Returns whether a value may be above 0, for all that its text tells."""
     text = text_of(node).strip("( )")
     return not text.startswith("-") and text != "false" and not re.fullmatch(r"[0.]+f?", text)
 
 
-def _is_punished(node: tree_sitter.Node) -> bool:
+def _is_punished(node: Node) -> bool:
     """Returns whether the block of a statement costs something."""
     block = node.parent.parent if node.parent is not None else None
     return block is not None and any(
@@ -258,7 +258,7 @@ def _is_punished(node: tree_sitter.Node) -> bool:
     )
 
 
-def _is_in_loop(node: tree_sitter.Node) -> bool:
+def _is_in_loop(node: Node) -> bool:
     while (node_above := node.parent) is not None:
         if node_above.type in _LOOPS:
             return True
@@ -266,7 +266,7 @@ def _is_in_loop(node: tree_sitter.Node) -> bool:
     return False
 
 
-def _cannot_fail(node: tree_sitter.Node) -> bool:
+def _cannot_fail(node: Node) -> bool:
     """Returns whether an expression may be evaluated whatever was asked before it."""
     return not any(
         part.type in _MAY_FAIL

@@ -1,6 +1,6 @@
 """Statements of C++ that do nothing, and settings where a comparison is meant, by their syntax trees."""
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.nodes import below, field_of, text_of
 
@@ -13,7 +13,7 @@ _PARTS_OF_VALUES = _PLAIN | {
 """The named parts of an expression that changes nothing."""
 
 
-def idle_parts(statement: tree_sitter.Node) -> tuple[list[tree_sitter.Node], list[tree_sitter.Node]]:
+def idle_parts(statement: Node) -> tuple[list[Node], list[Node]]:
     """Returns each `==` of a statement that only compares, and the whole of another that only has a value."""
     whole = statement.named_children[0] if statement.named_children else None
     if whole is not None and whole.type == "conditional_expression":  # x == is_met ? done : failed;
@@ -25,7 +25,7 @@ def idle_parts(statement: tree_sitter.Node) -> tuple[list[tree_sitter.Node], lis
     return compared, [whole] if not compared and _only_has_a_value(whole) else []
 
 
-def is_turned(assignment: tree_sitter.Node) -> bool:
+def is_turned(assignment: Node) -> bool:
     """Returns whether a `+` stands right behind the sign, as in `x =+ 1`."""
     operator, right = (field_of(assignment, part) for part in ("operator", "right"))
     if operator is None or right is None or operator.end_byte != right.start_byte:
@@ -33,7 +33,7 @@ def is_turned(assignment: tree_sitter.Node) -> bool:
     return text_of(right).startswith("+") and not text_of(right).startswith("++")
 
 
-def is_condition(node: tree_sitter.Node, prefix: int) -> bool:
+def is_condition(node: Node, prefix: int) -> bool:
     """Returns whether an assignment is a whole condition. In a second pair of brackets it is meant so; those
     before the prefix are not of the code."""
     outer = node.parent
@@ -49,7 +49,7 @@ def is_condition(node: tree_sitter.Node, prefix: int) -> bool:
     return is_owned and outer == field_of(owner, "condition")
 
 
-def _only_has_a_value(node: tree_sitter.Node) -> bool:
+def _only_has_a_value(node: Node) -> bool:
     """Returns whether an expression changes nothing; what `<<` and `>>` do is up to their operands."""
     return not node.has_error and all(
         part.type in _PARTS_OF_VALUES if part.is_named else part.type not in ("<<", ">>")

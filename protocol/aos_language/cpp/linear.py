@@ -6,7 +6,7 @@ The reading is of the text. Where the text leaves a doubt, the answer is no.
 import re
 from collections.abc import Iterator
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import is_draw
@@ -44,7 +44,7 @@ def identifiers_of(cpp: Cpp) -> frozenset[str]:
     return frozenset(_identifiers(_root(cpp)))
 
 
-def _is_added_to(node: tree_sitter.Node) -> bool:
+def _is_added_to(node: Node) -> bool:
     parent = node.parent
     return (
         parent is not None
@@ -59,21 +59,21 @@ def _is_added_to(node: tree_sitter.Node) -> bool:
 class _Linear:
     """Follows one draw upwards, from expression to statement, and through local variables."""
 
-    def __init__(self, root: tree_sitter.Node, result: str, elsewhere: frozenset[str]) -> None:
+    def __init__(self, root: Node, result: str, elsewhere: frozenset[str]) -> None:
         self._root = root
         self._result = result
         self._elsewhere = elsewhere
         self._carriers: set[str] = set()
         """The local variables that depend on the draw."""
-        self._factors: list[tree_sitter.Node] = []
+        self._factors: list[Node] = []
 
-    def reaches_result(self, draw: tree_sitter.Node) -> bool:
+    def reaches_result(self, draw: Node) -> bool:
         if not self._follows(draw):
             return False
         names = {name for factor in self._factors for name in _identifiers(factor)}
         return not names & self._carriers
 
-    def _follows(self, node: tree_sitter.Node) -> bool:
+    def _follows(self, node: Node) -> bool:
         parent = node.parent
         while parent is not None and self._passes_on(parent, node):
             node, parent = parent, parent.parent
@@ -84,7 +84,7 @@ class _Linear:
             return target is not None and text_of(target) == self._result and _is_added_to(target)
         return parent.type == "init_declarator" and self._follows_local(parent)
 
-    def _passes_on(self, parent: tree_sitter.Node, node: tree_sitter.Node) -> bool:
+    def _passes_on(self, parent: Node, node: Node) -> bool:
         if parent.type == "parenthesized_expression":
             return True
         if parent.type == "unary_expression":
@@ -102,7 +102,7 @@ class _Linear:
             return True
         return operator in ("+", "-")
 
-    def _follows_local(self, declarator: tree_sitter.Node) -> bool:
+    def _follows_local(self, declarator: Node) -> bool:
         """Returns whether it declares a plain number, once, that never changes and is passed on by each
         use."""
         name, declaration = field_of(declarator, "declarator"), declarator.parent
@@ -117,7 +117,7 @@ class _Linear:
         return all(use == name or self._follows(use) for use in uses)
 
 
-def _root(cpp: Cpp) -> tree_sitter.Node | None:
+def _root(cpp: Cpp) -> Node | None:
     """The tree of a function with the snippet in it; None where it cannot be read."""
     if cpp.faults:
         return None
@@ -125,11 +125,11 @@ def _root(cpp: Cpp) -> tree_sitter.Node | None:
     return None if root.has_error else root
 
 
-def _identifiers(node: tree_sitter.Node | None) -> Iterator[str]:
+def _identifiers(node: Node | None) -> Iterator[str]:
     return (text_of(part) for part in below(node) if part.type == "identifier")
 
 
-def _function(draw: tree_sitter.Node) -> str:
+def _function(draw: Node) -> str:
     """The last name of what is called."""
     function = field_of(draw, "function")
     return re.findall(r"\w+", text_of(function))[-1] if function is not None else ""

@@ -10,7 +10,8 @@ from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 
 import msgspec
-import tree_sitter
+from msgspec.structs import replace
+from tree_sitter import Node
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.keywords import DRAW_SOURCES
@@ -32,7 +33,7 @@ class Scope(msgspec.Struct, frozen=True):
     captured: frozenset[str] = frozenset()
 
     def with_variables(self, names: Iterable[str]) -> Scope:
-        return msgspec.structs.replace(self, variables=self.variables.union(names))
+        return replace(self, variables=self.variables.union(names))
 
 
 class DrawingLoop(msgspec.Struct, frozen=True):
@@ -78,7 +79,7 @@ _COMPARISONS = ("<", "<=", ">", ">=", "!=")
 
 
 class _Reading:
-    def __init__(self, root: tree_sitter.Node, cpp: Cpp, text: tuple[str, str], scope: Scope) -> None:
+    def __init__(self, root: Node, cpp: Cpp, text: tuple[str, str], scope: Scope) -> None:
         before, complete = text
         self._before = len(before)
         self._body = root.children[0].child_by_field_name("body") or root
@@ -112,7 +113,7 @@ class _Reading:
                     drawing |= named
         return Scope(scope.variables, frozenset(lambdas - others), frozenset(drawing), frozenset(captured))
 
-    def _loop(self, node: tree_sitter.Node) -> DrawingLoop | None:
+    def _loop(self, node: Node) -> DrawingLoop | None:
         if node.type not in _LOOPS or not _names(node) & self._scope.drawing or _counts(node):
             return None
         head = self._head(node)
@@ -130,7 +131,7 @@ class _Reading:
             _is_in_function(node),
         )
 
-    def _head(self, loop: tree_sitter.Node) -> tuple[int, int] | None:
+    def _head(self, loop: Node) -> tuple[int, int] | None:
         condition = field_of(loop, "condition")
         if condition is None:
             if loop.type != "for_statement":
@@ -155,9 +156,7 @@ class _Reading:
         return characters - bisect_left(self._inserted, characters)
 
 
-def _visible(
-    loop: tree_sitter.Node, around: frozenset[str], lambdas: frozenset[str]
-) -> frozenset[str] | None:
+def _visible(loop: Node, around: frozenset[str], lambdas: frozenset[str]) -> frozenset[str] | None:
     """The variables that may change and that a loop's condition sees; None where its text does not tell."""
     visible: list[tuple[str, bool]] = []
     initializer = field_of(loop, "initializer")
@@ -190,7 +189,7 @@ def _visible(
     return around | {name for name, is_constant in visible if not is_constant}
 
 
-def _is_in_function(loop: tree_sitter.Node) -> bool:
+def _is_in_function(loop: Node) -> bool:
     parent = loop.parent
     while parent is not None and parent.type not in ("lambda_expression", "function_definition"):
         parent = parent.parent
@@ -199,12 +198,12 @@ def _is_in_function(loop: tree_sitter.Node) -> bool:
     return above is not None and above.type != "translation_unit"
 
 
-def _parameters(function: tree_sitter.Node) -> list[tuple[str, bool]]:
+def _parameters(function: Node) -> list[tuple[str, bool]]:
     parts = below(field_of(function, "declarator"))
     return [found for part in parts if "parameter_declaration" in part.type for found in _declared(part)]
 
 
-def _declared(node: tree_sitter.Node, *, of_lambdas: bool = True) -> list[tuple[str, bool]]:
+def _declared(node: Node, *, of_lambdas: bool = True) -> list[tuple[str, bool]]:
     """The variables that a statement declares for those after it, each with whether it is constant.
 
     Without `of_lambdas`, those are left out that are lambdas without a state of their own.
@@ -228,19 +227,19 @@ def _declared(node: tree_sitter.Node, *, of_lambdas: bool = True) -> list[tuple[
     return found
 
 
-def _is_lambda(value: tree_sitter.Node | None) -> bool:
+def _is_lambda(value: Node | None) -> bool:
     """Returns whether it is a lambda that keeps nothing from call to call."""
     is_lambda = value is not None and value.type == "lambda_expression"
     return is_lambda and not any(text_of(part) == "mutable" for part in below(value))
 
 
-def _inner(declarator: tree_sitter.Node) -> tree_sitter.Node:
+def _inner(declarator: Node) -> Node:
     if declarator.type != "init_declarator":
         return declarator
     return field_of(declarator, "declarator") or declarator
 
 
-def _names_of_declarator(declarator: tree_sitter.Node | None) -> list[tuple[str, bool]]:
+def _names_of_declarator(declarator: Node | None) -> list[tuple[str, bool]]:
     waiting = [_inner(declarator)] if declarator is not None else []
     found: list[tuple[str, bool]] = []
     while waiting:
@@ -255,7 +254,7 @@ def _names_of_declarator(declarator: tree_sitter.Node | None) -> list[tuple[str,
     return found
 
 
-def _unset(node: tree_sitter.Node) -> Iterator[int]:
+def _unset(node: Node) -> Iterator[int]:
     """Yields the ends of the declaration's variables without a first value."""
     if node.type != "declaration" or any(child.type == "storage_class_specifier" for child in node.children):
         return
@@ -266,7 +265,7 @@ def _unset(node: tree_sitter.Node) -> Iterator[int]:
             yield declarator.end_byte
 
 
-def _counts(loop: tree_sitter.Node) -> bool:
+def _counts(loop: Node) -> bool:
     """Returns whether it is a `for` over a variable that only its last part changes."""
     update, condition = field_of(loop, "update"), field_of(loop, "condition")
     body = field_of(loop, "body")
@@ -290,7 +289,7 @@ def _counts(loop: tree_sitter.Node) -> bool:
     return bool((counters & compared) - _changed(body))
 
 
-def _changed(body: tree_sitter.Node) -> set[str]:
+def _changed(body: Node) -> set[str]:
     """The names that a statement assigns to, or makes a reference or a pointer of."""
     changed: set[str] = set()
     for part in below(body):
@@ -303,7 +302,7 @@ def _changed(body: tree_sitter.Node) -> set[str]:
     return changed
 
 
-def _root(place: tree_sitter.Node | None) -> set[str]:
+def _root(place: Node | None) -> set[str]:
     """The variable that a place is a part of: `a` of `a[i].b`."""
     while place is not None and place.type != "identifier":
         named = place.named_children[:1] if place.type == "parenthesized_expression" else []
@@ -311,6 +310,6 @@ def _root(place: tree_sitter.Node | None) -> set[str]:
     return {text_of(place)} if place is not None else set()
 
 
-def _names(node: tree_sitter.Node | None) -> set[str]:
+def _names(node: Node | None) -> set[str]:
     """The identifiers below a node, also those before `::`, as `AOSUtils`."""
     return {text_of(part) for part in below(node) if part.type in ("identifier", "namespace_identifier")}

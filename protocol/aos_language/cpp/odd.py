@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.nodes import below, child_of, field_of, field_text, operator_of, text_of
 
@@ -26,14 +26,14 @@ _LEAVING = ("break_statement", "continue_statement", "goto_statement", "return_s
 class Odd(NamedTuple):
     """An `OddPart` at its place in the tree."""
 
-    place: tree_sitter.Node
+    place: Node
     message: str
     hint: str
     of_enums: tuple[str, ...] = ()
     local: str = ""
 
 
-def odd_parts(node: tree_sitter.Node) -> Iterator[Odd]:
+def odd_parts(node: Node) -> Iterator[Odd]:
     """Yields what is odd about a node, those below it apart."""
     if node.type == "binary_expression" and len(node.children) == 3:
         yield from _calculated(node)
@@ -68,7 +68,7 @@ def odd_parts(node: tree_sitter.Node) -> Iterator[Odd]:
             yield Odd(node.children[0], "what stands here goes on into the next `case`", hint)
 
 
-def _copied(loop: tree_sitter.Node) -> Iterator[Odd]:
+def _copied(loop: Node) -> Iterator[Odd]:
     """Yields the copies of the state's elements that a loop only sets."""
     declared = field_of(loop, "declarator")
     if declared is None or not _OF_STATE.match(field_text(loop, "right")):
@@ -82,7 +82,7 @@ def _copied(loop: tree_sitter.Node) -> Iterator[Odd]:
             )
 
 
-def _copied_variable(node: tree_sitter.Node) -> Iterator[Odd]:
+def _copied_variable(node: Node) -> Iterator[Odd]:
     """Yields a copy of the state, or of a part, that is only set: `auto box = state__.box; box.x = 1;`."""
     declared = field_of(node, "declarator")
     if declared is None or declared.type != "init_declarator" or node.parent is None:
@@ -100,7 +100,7 @@ def _copied_variable(node: tree_sitter.Node) -> Iterator[Odd]:
         yield Odd(used[0], f"`{name}` is a copy: this changes nothing", hint, local=name)
 
 
-def _set_oddly(setting: tree_sitter.Node) -> Iterator[Odd]:
+def _set_oddly(setting: Node) -> Iterator[Odd]:
     """Yields what is set to itself, and `x =- 1`."""
     left, sign, right = setting.children[0], setting.children[1], setting.children[-1]
     name = text_of(left)
@@ -112,7 +112,7 @@ def _set_oddly(setting: tree_sitter.Node) -> Iterator[Odd]:
         yield Odd(sign, "`=-` subtracts nothing: it sets", "To subtract, write `-=`")
 
 
-def _set_again(setting: tree_sitter.Node, statement: tree_sitter.Node) -> Iterator[Odd]:
+def _set_again(setting: Node, statement: Node) -> Iterator[Odd]:
     """Yields what the next statement sets anew without having read it."""
     later = statement.next_named_sibling
     while later is not None and later.type == "comment":
@@ -135,12 +135,12 @@ def _set_again(setting: tree_sitter.Node, statement: tree_sitter.Node) -> Iterat
         yield Odd(setting.children[0], told, adds)
 
 
-def _only_breaks(case: tree_sitter.Node | None) -> bool:
+def _only_breaks(case: Node | None) -> bool:
     statements = case.named_children if case is not None else []
     return any(part.type == "break_statement" for part in statements[:2])
 
 
-def _is_only_set(part: tree_sitter.Node, *, whole: bool) -> bool:
+def _is_only_set(part: Node, *, whole: bool) -> bool:
     """Returns whether a statement sets a field of this name, or the whole of it, and does no more."""
     while (
         (above := part.parent) is not None and above.type == "field_expression" and operator_of(above) == "."
@@ -152,7 +152,7 @@ def _is_only_set(part: tree_sitter.Node, *, whole: bool) -> bool:
     return whole and is_set and part in (above.children[0], field_of(above, "argument"))
 
 
-def _calculated(node: tree_sitter.Node) -> Iterator[Odd]:
+def _calculated(node: Node) -> Iterator[Odd]:
     left, sign, right = node.children
     operator, first, second = map(text_of, (sign, left, right))
     if operator == "/" and _WHOLE.fullmatch(first) and _WHOLE.fullmatch(second) and int(second):
@@ -180,7 +180,7 @@ def _calculated(node: tree_sitter.Node) -> Iterator[Odd]:
             yield from _joined(left, operator, right)
 
 
-def _joined(left: tree_sitter.Node, operator: str, right: tree_sitter.Node) -> Iterator[Odd]:
+def _joined(left: Node, operator: str, right: Node) -> Iterator[Odd]:
     """Yields a second condition that compares nothing, or that says nothing together with the first."""
     subject, sign, value = map(text_of, left.children)
     if right.type in _FIXED:
@@ -196,5 +196,5 @@ def _joined(left: tree_sitter.Node, operator: str, right: tree_sitter.Node) -> I
             )
 
 
-def _names(*parts: tree_sitter.Node) -> tuple[str, ...]:
+def _names(*parts: Node) -> tuple[str, ...]:
     return tuple(text_of(part) for part in parts if part.type == "identifier")

@@ -3,7 +3,7 @@
 from bisect import bisect_left
 from collections.abc import Sequence
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.tokens import Extent, Lines
 
@@ -21,7 +21,7 @@ class Places:
         self._offsets = _character_offsets(complete)
         self._inserted = [at + index for index, at in enumerate(missing_semicolons)]
 
-    def extent(self, node: tree_sitter.Node) -> Extent:
+    def extent(self, node: Node) -> Extent:
         """Returns where a node stands; what is around the code has a place without length."""
         start, end = (self._offset(byte) for byte in (node.start_byte, node.end_byte))
         return self._lines.extent(start, end)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import TypeVar
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.elements import asks_for_element, begun_container, is_checked, root_of
 from aos_language.cpp.facts import (
@@ -39,7 +39,7 @@ class TreeReader:
         self._prefix = prefix
         self._tokens = tokens
         self.extent = Places(code, complete, prefix, tokens.missing_semicolons).extent
-        self._stack: list[tuple[tree_sitter.Node, Access]] = []
+        self._stack: list[tuple[Node, Access]] = []
         self.mentions: list[Mention] = []
         self.calls: list[Call] = []
         self.elements: list[Element] = []
@@ -51,7 +51,7 @@ class TreeReader:
         self.set_in_conditions: list[tuple[Extent, Extent]] = []
         self.odd_parts: list[OddPart] = []
 
-    def read(self, root: tree_sitter.Node) -> Cpp:
+    def read(self, root: Node) -> Cpp:
         self._stack.append((root, Access.READ))
         while self._stack:
             self._visit(*self._stack.pop())
@@ -71,7 +71,7 @@ class TreeReader:
             odd_parts=tuple(sorted(self.odd_parts, key=_by_start)),
         )
 
-    def _visit(self, node: tree_sitter.Node, access: Access) -> None:
+    def _visit(self, node: Node, access: Access) -> None:
         if node.is_missing:
             self._fault(node, f"expected {node.type!r}")
             return
@@ -86,27 +86,27 @@ class TreeReader:
         else:
             handler(self, node, access)
 
-    def _push(self, nodes: Iterable[tree_sitter.Node | None], access: Access = Access.READ) -> None:
+    def _push(self, nodes: Iterable[Node | None], access: Access = Access.READ) -> None:
         self._stack += [(node, access) for node in nodes if node is not None]
 
-    def _statement(self, node: tree_sitter.Node, access: Access) -> None:
+    def _statement(self, node: Node, access: Access) -> None:
         compared, values = idle_parts(node)
         self.idle_operators += map(self.extent, compared)
         self.idle_values += map(self.extent, values)
         self._push(node.children)
 
-    def _label(self, node: tree_sitter.Node, access: Access) -> None:
+    def _label(self, node: Node, access: Access) -> None:
         label = child_of(node, "label")
         if mistake := mistaken_label(text_of(label)):
             self._fault(label, *mistake)
         self._push(node.children[1:])
 
-    def _binary(self, node: tree_sitter.Node, access: Access) -> None:
+    def _binary(self, node: Node, access: Access) -> None:
         """Takes what stands behind `>>` as changed, since a stream may set it."""
         self._push(node.children[:-1])
         self._push(node.children[-1:], Access.BIND if operator_of(node) == ">>" else Access.READ)
 
-    def _comma(self, node: tree_sitter.Node, access: Access) -> None:
+    def _comma(self, node: Node, access: Access) -> None:
         """A comma that drops what stands before it; between two digits it was meant as a point."""
         left, comma, right = (text_of(child) for child in node.children[:3])
         follows = node.children[0].end_byte == node.children[1].start_byte == node.children[2].start_byte - 1
@@ -115,12 +115,12 @@ class TreeReader:
             self.idle_operators.append(self.extent(node.children[1]))
         self._push(node.children)
 
-    def _fault(self, node: tree_sitter.Node, message: str, hint: str = "") -> None:
+    def _fault(self, node: Node, message: str, hint: str = "") -> None:
         self.faults.append(Fault(FaultKind.SYNTAX, message, self.extent(node), hint))
 
     # --- paths ---
 
-    def _path(self, node: tree_sitter.Node, access: Access, assigned: Extent | None = None) -> None:
+    def _path(self, node: Node, access: Access, assigned: Extent | None = None) -> None:
         parts, root = self._flatten(node, access)
         if root is None:
             return
@@ -132,9 +132,7 @@ class TreeReader:
             extent, root_extent = self.extent(node), self.extent(root)
             self.mentions.append(Mention(parts, access, extent, root_extent, assigned=assigned))
 
-    def _flatten(
-        self, node: tree_sitter.Node, access: Access = Access.READ
-    ) -> tuple[tuple[str, ...], tree_sitter.Node | None]:
+    def _flatten(self, node: Node, access: Access = Access.READ) -> tuple[tuple[str, ...], Node | None]:
         """The parts of an access path; subscripts, and what an unnamed root is made of, go on the stack."""
         parts: list[str] = []
         current = node
@@ -172,15 +170,15 @@ class TreeReader:
                 self._push([current], access)
                 return (), None
 
-    def _element(self, container: tree_sitter.Node, brackets: Extent | None = None) -> None:
+    def _element(self, container: Node, brackets: Extent | None = None) -> None:
         self.elements.append(Element(self.extent(container), brackets, text_of(root_of(container))))
 
-    def _dereferenced(self, iterator: tree_sitter.Node) -> None:
+    def _dereferenced(self, iterator: Node) -> None:
         """Asks the container of an iterator, also one of the state, whose iterators check nothing."""
         if (container := begun_container(iterator)) is not None:
             self.elements.append(Element(self.extent(container)))
 
-    def _push_template_arguments(self, node: tree_sitter.Node | None) -> None:
+    def _push_template_arguments(self, node: Node | None) -> None:
         while node is not None and node.type == "qualified_identifier":
             node = field_of(node, "name")
         if node is not None and node.type in ("template_function", "template_method", "template_type"):
@@ -188,7 +186,7 @@ class TreeReader:
 
     # --- expressions ---
 
-    def _assignment(self, node: tree_sitter.Node, access: Access) -> None:
+    def _assignment(self, node: Node, access: Access) -> None:
         operator = field_of(node, "operator")
         is_plain = operator is None or text_of(operator) == "="
         left, right = child_of(node, "left"), field_of(node, "right")
@@ -204,25 +202,25 @@ class TreeReader:
         self._push([right])
         self._push(child for child in node.children if child.is_error)
 
-    def _update(self, node: tree_sitter.Node, access: Access) -> None:
+    def _update(self, node: Node, access: Access) -> None:
         self._push([field_of(node, "argument")], Access.UPDATE)
 
-    def _pointer(self, node: tree_sitter.Node, access: Access) -> None:
+    def _pointer(self, node: Node, access: Access) -> None:
         is_address = node.children[0].type == "&"
         if not is_address:
             self._dereferenced(child_of(node, "argument"))
         self._push([field_of(node, "argument")], Access.BIND if is_address else access)
 
-    def _pass_on(self, node: tree_sitter.Node, access: Access) -> None:
+    def _pass_on(self, node: Node, access: Access) -> None:
         self._push(node.children, access)
 
-    def _conditional(self, node: tree_sitter.Node, access: Access) -> None:
+    def _conditional(self, node: Node, access: Access) -> None:
         self._push([field_of(node, "condition")])
         branches = [field_of(node, "consequence"), field_of(node, "alternative")]
         self._push(branches, access)
         self._push(child for child in node.children if child.is_error)
 
-    def _call(self, node: tree_sitter.Node, access: Access) -> None:
+    def _call(self, node: Node, access: Access) -> None:
         function = child_of(node, "function")
         arguments = child_of(node, "arguments")
         named = [child for child in arguments.named_children if child.type != "comment"]
@@ -234,7 +232,7 @@ class TreeReader:
             Call(name, self.extent(node), self.extent(function), tuple(map(self.extent, named)))
         )
 
-    def _called(self, function: tree_sitter.Node, access: Access) -> tuple[str, ...]:
+    def _called(self, function: Node, access: Access) -> tuple[str, ...]:
         if function.type == "template_function":
             self._push([field_of(function, "arguments")])
             function = child_of(function, "name")
@@ -257,7 +255,7 @@ class TreeReader:
 
     # --- declarations ---
 
-    def _declaration(self, node: tree_sitter.Node, access: Access) -> None:
+    def _declaration(self, node: Node, access: Access) -> None:
         type_node = field_of(node, "type")
         self._push([type_node])
         prefix = [child for child in node.children if child.type == "type_qualifier"]
@@ -275,9 +273,7 @@ class TreeReader:
             self._push([field_of(node, "initializer"), field_of(node, "body")])
         self._push(child for child in node.children if child.is_error or child.is_missing)
 
-    def _declarator(
-        self, node: tree_sitter.Node, type_text: str, kind: DeclarationKind, is_constant: bool
-    ) -> None:
+    def _declarator(self, node: Node, type_text: str, kind: DeclarationKind, is_constant: bool) -> None:
         initial = field_of(node, "value") if node.type == "init_declarator" else None
         inner = child_of(node, "declarator") if node.type == "init_declarator" else node
         if inner.type in ("reference_declarator", "pointer_declarator"):
@@ -300,7 +296,7 @@ class TreeReader:
             else:
                 self._push(name.children)
 
-    def _enum(self, node: tree_sitter.Node, access: Access) -> None:
+    def _enum(self, node: Node, access: Access) -> None:
         name = field_of(node, "name")
         enum_name = text_of(name) if name is not None else ""
         if name is not None:
@@ -316,7 +312,7 @@ class TreeReader:
                 self.declarations.append(declaration)
                 self._push([field_of(enumerator, "value")])
 
-    def _captures(self, node: tree_sitter.Node, access: Access) -> None:
+    def _captures(self, node: Node, access: Access) -> None:
         """Captures with a value, `[n = 1]`, are variables of the lambda. Others are named in its body."""
         for capture in node.named_children:
             left, right = (field_of(capture, side) for side in ("left", "right"))
@@ -334,10 +330,10 @@ class TreeReader:
                 )
             )
 
-    def _type(self, node: tree_sitter.Node, access: Access) -> None:
+    def _type(self, node: Node, access: Access) -> None:
         self.types.append((text_of(node), self.extent(node)))
 
-    def _skip(self, node: tree_sitter.Node, access: Access) -> None:
+    def _skip(self, node: Node, access: Access) -> None:
         pass
 
 
@@ -378,13 +374,13 @@ def _method_access(method: str, outer: Access, *, is_aos: bool) -> Access:
     return outer
 
 
-def _is_type(node: tree_sitter.Node | None) -> bool:
+def _is_type(node: Node | None) -> bool:
     while node is not None and node.type == "qualified_identifier":
         node = field_of(node, "name")
     return node is not None and node.type in ("type_identifier", "template_type")
 
 
-def _within_brackets(initial: tree_sitter.Node | None) -> tree_sitter.Node | None:
+def _within_brackets(initial: Node | None) -> Node | None:
     """The place that a reference is bound to: `x` of `int& one{x}`."""
     if initial is None or initial.type not in ("argument_list", "initializer_list"):
         return initial

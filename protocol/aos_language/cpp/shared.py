@@ -10,7 +10,8 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 import msgspec
-import tree_sitter
+from msgspec.structs import replace
+from tree_sitter import Node
 
 from aos_language.cpp.facts import READING_FUNCTIONS
 from aos_language.cpp.keywords import DRAW_SOURCES
@@ -150,7 +151,7 @@ class _Reading:
         self._late: set[str] = set(compounds)
         self._other_types = _OTHER_TYPES
 
-    def read(self, root: tree_sitter.Node) -> SharedCode:
+    def read(self, root: Node) -> SharedCode:
         functions = {_declared(node) for node in root.named_children if _is_function(node)}
         self._late |= {name for name in functions if name}
         for node in root.named_children:
@@ -159,7 +160,7 @@ class _Reading:
         plain = {function.name for function in self._functions if function.only_reads}
         changing = self._closure({function.name for function in self._functions} - plain) | drawing
         found = [
-            msgspec.structs.replace(
+            replace(
                 function,
                 draws=function.name in drawing,
                 only_reads=function.only_reads and function.name not in changing,
@@ -175,7 +176,7 @@ class _Reading:
             found |= new
         return found
 
-    def _declaration(self, node: tree_sitter.Node) -> None:
+    def _declaration(self, node: Node) -> None:
         kind = node.type
         if kind == "comment" or (kind == "expression_statement" and text_of(node) == ";"):
             return
@@ -199,7 +200,7 @@ class _Reading:
         else:
             self._misuse(node, "this is no declaration", _HINT)
 
-    def _constant(self, node: tree_sitter.Node) -> None:
+    def _constant(self, node: Node) -> None:
         qualifiers = {text_of(child) for child in node.children if child.type in _QUALIFIERS}
         for declarator in node.children_by_field_name("declarator"):
             name = _name_node(declarator)
@@ -227,7 +228,7 @@ class _Reading:
                 self._misuse(name, f"the constant `{text_of(name)}` is drawn", "Draw where it is needed")
             self._add(node, name, "constant")
 
-    def _enum(self, node: tree_sitter.Node) -> None:
+    def _enum(self, node: Node) -> None:
         if (name := field_of(node, "name")) is not None:
             self._add(node, name, "enum")
         body = field_of(node, "body")
@@ -235,7 +236,7 @@ class _Reading:
             if (name := field_of(value, "name")) is not None:
                 self._add(node, name, "enum value")
 
-    def _add(self, node: tree_sitter.Node, name: tree_sitter.Node | None, kind: str) -> None:
+    def _add(self, node: Node, name: Node | None, kind: str) -> None:
         if name is None:
             self._misuse(node, "this is no declaration", _HINT)
             return
@@ -245,7 +246,7 @@ class _Reading:
         extent = self._extent(node)
         self._names.append(SharedName(text_of(name), kind, extent, self._extent(name), is_late))
 
-    def _function(self, node: tree_sitter.Node) -> None:
+    def _function(self, node: Node) -> None:
         function = next(part for part in below(node) if part.type == "function_definition")
         declarators = [*_declarators(field_of(function, "declarator"))]
         header = next(
@@ -289,15 +290,15 @@ class _Reading:
             )
         )
 
-    def _only_read(self, parameter: tree_sitter.Node) -> bool:
+    def _only_read(self, parameter: Node) -> bool:
         """Returns whether a function can change nothing of its caller's through a parameter."""
         kind = text_of(parameter).partition("=")[0]
         return self._other_types.search(kind) is None or _CONSTANT_REFERENCE.match(kind.strip()) is not None
 
-    def _misuse(self, node: tree_sitter.Node, message: str, hint: str) -> None:
+    def _misuse(self, node: Node, message: str, hint: str) -> None:
         self._misuses.append(SharedMisuse(self._extent(node), message, hint))
 
-    def _extent(self, node: tree_sitter.Node) -> Extent:
+    def _extent(self, node: Node) -> Extent:
         return self._lines.extent(self._offset(node.start_byte), self._offset(node.end_byte))
 
     def _offset(self, byte: int) -> int:
@@ -308,20 +309,20 @@ class _Reading:
 _QUALIFIERS = ("type_qualifier", "storage_class_specifier")
 
 
-def _is_function(node: tree_sitter.Node) -> bool:
+def _is_function(node: Node) -> bool:
     if node.type == "template_declaration":
         return any(child.type == "function_definition" for child in node.named_children)
     return node.type == "function_definition"
 
 
-def _declared(node: tree_sitter.Node) -> str:
+def _declared(node: Node) -> str:
     for part in below(node):
         if part.type == "function_declarator":
             return field_text(part, "declarator")
     return ""
 
 
-def _declarators(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
+def _declarators(node: Node | None) -> Iterator[Node]:
     while node is not None:
         yield node
         inner = field_of(node, "declarator")
@@ -330,17 +331,17 @@ def _declarators(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
         node = inner
 
 
-def _name_node(declarator: tree_sitter.Node) -> tree_sitter.Node | None:
+def _name_node(declarator: Node) -> Node | None:
     last = [*_declarators(declarator)][-1]
     return last if last.type == "identifier" else None
 
 
-def _parameter_name(parameter: tree_sitter.Node) -> str:
+def _parameter_name(parameter: Node) -> str:
     """Returns the name of a parameter; empty for one without a name."""
     names = [text_of(part) for part in _declarators(field_of(parameter, "declarator"))]
     return names[-1] if names and names[-1].isidentifier() else ""
 
 
-def _identifiers(node: tree_sitter.Node) -> Iterator[str]:
+def _identifiers(node: Node) -> Iterator[str]:
     kinds = ("identifier", "type_identifier", "namespace_identifier")
     return (text_of(part) for part in below(node) if part.type in kinds)

@@ -8,7 +8,7 @@ read, nor of one that takes the parser long. No names are resolved here: a menti
 from collections.abc import Iterable
 from functools import lru_cache
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.cpp.facts import Access, Call, Cpp, Declaration, DeclarationKind, Mention
 from aos_language.cpp.reader import TreeReader
@@ -57,7 +57,7 @@ def read_cpp(code: str) -> Cpp:
 @lru_cache(maxsize=4096)
 def read_cpp_expression(code: str) -> Cpp:
     """One expression, or a list in braces that a variable starts with."""
-    tokens = msgspec.structs.replace(cut(code), missing_semicolons=())
+    tokens = replace(cut(code), missing_semicolons=())
     is_list = strip_comments(code).lstrip().startswith("{")
     before, after = ("auto x = ", "\n;") if is_list else ("auto x = (", "\n);")
     return _read(code, tokens, before=before, after=after)

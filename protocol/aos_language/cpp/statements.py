@@ -6,7 +6,7 @@ The marked code does what the code does, on the same lines; what the marks do is
 from collections.abc import Callable
 
 import msgspec
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.nodes import field_of
 from aos_language.cpp.tree import tree_of
@@ -72,7 +72,7 @@ class _Marking:
         """Returns the insertions by byte of the tree's text; at one place an end comes before a start."""
         return sorted([*reversed(self._ends), *self._starts], key=lambda insertion: insertion[0])
 
-    def mark(self, root: tree_sitter.Node) -> None:
+    def mark(self, root: Node) -> None:
         # Nodes wait on a stack, so that no text is too deep to read.
         waiting = [(node, False) for node in root.children[0].children]
         while waiting:
@@ -86,7 +86,7 @@ class _Marking:
             self._mark(node, is_in_lambda)
             waiting += [(child, is_in_lambda) for child in reversed(node.children)]
 
-    def _mark(self, node: tree_sitter.Node, is_in_lambda: bool) -> None:
+    def _mark(self, node: Node, is_in_lambda: bool) -> None:
         is_branch = _is_branch(node)
         if is_branch or _is_in_a_list(node):
             statement = self._statement(node)
@@ -97,7 +97,7 @@ class _Marking:
         if node.type in _LOOPS:
             self._mark_condition(node)
 
-    def _mark_condition(self, loop: tree_sitter.Node) -> None:
+    def _mark_condition(self, loop: Node) -> None:
         """A condition that is there and declares nothing; a `for` without one tests the mark."""
         mark = self._marks.before(self._statement(loop))
         condition = field_of(loop, "condition")
@@ -113,22 +113,22 @@ class _Marking:
         if "declaration" not in condition.type:
             self._starts.append((condition.start_byte, f"{mark}, "))
 
-    def _statement(self, node: tree_sitter.Node) -> Statement:
+    def _statement(self, node: Node) -> Statement:
         line, byte = node.start_point
         before = self._lines[line - 1].encode()[:byte]
         return Statement(line, len(before.decode()) + 1, (node.text or b"").decode())
 
 
-def _is_of_compile_time(function: tree_sitter.Node) -> bool:
+def _is_of_compile_time(function: Node) -> bool:
     return any((child.text or b"") in (b"constexpr", b"consteval") for child in function.children)
 
 
-def _parent(node: tree_sitter.Node) -> tree_sitter.Node:
+def _parent(node: Node) -> Node:
     assert node.parent is not None
     return node.parent
 
 
-def _is_branch(node: tree_sitter.Node) -> bool:
+def _is_branch(node: Node) -> bool:
     """A statement without braces below an `if`, an `else` or a loop."""
     parent = _parent(node)
     if not node.is_named or node.type in ("compound_statement", *_NO_STATEMENTS):
@@ -139,7 +139,7 @@ def _is_branch(node: tree_sitter.Node) -> bool:
     return bool(field) and node == field_of(parent, field)
 
 
-def _is_in_a_list(node: tree_sitter.Node) -> bool:
+def _is_in_a_list(node: Node) -> bool:
     """A statement among others, in braces or after a label of a `switch`."""
     parent = _parent(node)
     if not node.is_named or node.type in _NO_STATEMENTS:

@@ -2,7 +2,7 @@
 
 import re
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.nodes import text_of
 from aos_protocol.spelling import nearest
@@ -15,7 +15,7 @@ _OTHER_LANGUAGES = (
 """Words of other languages, and what C++ says instead."""
 
 
-def unexpected(node: tree_sitter.Node) -> tuple[str, str]:
+def unexpected(node: Node) -> tuple[str, str]:
     """Returns the message and the hint for a part that the parser could not read."""
     text = text_of(node).strip().splitlines() or [""]
     before, after = node.prev_sibling, node.next_sibling

@@ -6,6 +6,7 @@ from functools import cache
 
 import tree_sitter
 import tree_sitter_cpp
+from tree_sitter import Node
 
 MAX_CPU_S = 2.0
 """A text that is far from C++ takes the parser time that grows faster than the text."""
@@ -36,7 +37,7 @@ def _local_functions() -> tree_sitter.Query:
     )
 
 
-def tree_of(text: str) -> tree_sitter.Node:
+def tree_of(text: str) -> Node:
     """The root of the tree of any text; places in it count bytes of UTF-8.
 
     `Row row(amount);` and `int& one(total);` in a body, which might declare a function, are read as `Row
@@ -46,7 +47,7 @@ def tree_of(text: str) -> tree_sitter.Node:
     return _with_variables(_PARSER.parse(data).root_node, data)
 
 
-def tree_soon(text: str) -> tree_sitter.Node | None:
+def tree_soon(text: str) -> Node | None:
     """The same; None where that takes more than `MAX_CPU_S` of processor time."""
     data = text.encode("utf-8", "replace")
     if len(data) <= _SHORT_BYTES:
@@ -66,7 +67,7 @@ def tree_soon(text: str) -> tree_sitter.Node | None:
     return _with_variables(root, data)
 
 
-def _with_variables(root: tree_sitter.Node, data: bytes) -> tree_sitter.Node:
+def _with_variables(root: Node, data: bytes) -> Node:
     """The tree with the variables that the parser has taken for functions."""
     if _MAY_DECLARE.search(data, max(data.find(b"{"), 0)) is None:
         return root
@@ -80,14 +81,14 @@ def _with_variables(root: tree_sitter.Node, data: bytes) -> tree_sitter.Node:
     return _PARSER.parse(bytes(text)).root_node
 
 
-def _starts(root: tree_sitter.Node) -> list[tree_sitter.Node]:
+def _starts(root: Node) -> list[Node]:
     """The values in brackets that were read as the parameters of a function."""
     declared = tree_sitter.QueryCursor(_local_functions()).captures(root).get("declared", ())
     lists = [node.child_by_field_name("parameters") for node in declared]
     return [values for values in lists if values is not None and _are_values(values)]
 
 
-def _are_values(parameters: tree_sitter.Node) -> bool:
+def _are_values(parameters: Node) -> bool:
     """Returns whether what was read as parameters has neither names nor types of C++ alone."""
     for part in parameters.named_children:
         if part.is_error:

@@ -7,7 +7,7 @@ other, so a variable that was set under a condition counts as set under another 
 """
 
 import msgspec
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.evaluation import Evaluation
 from aos_language.cpp.facts import Cpp
@@ -73,7 +73,7 @@ class _Walk(Evaluation):
         self._enums = enums
         self._loops: list[_Loop] = []
 
-    def statement(self, node: tree_sitter.Node | None, state: State) -> State:
+    def statement(self, node: Node | None, state: State) -> State:
         if node is None or not node.is_named or state.ended:
             return state
         handler = _STATEMENTS.get(node.type)
@@ -82,7 +82,7 @@ class _Walk(Evaluation):
         self.expression(node, state)
         return state
 
-    def _block(self, node: tree_sitter.Node, state: State) -> State:
+    def _block(self, node: Node, state: State) -> State:
         outer = set(state.unset)
         hidden = dict(self.declared)
         for child in node.named_children:
@@ -93,7 +93,7 @@ class _Walk(Evaluation):
             state.unset = {name: ways for name, ways in state.unset.items() if name in outer}
         return state
 
-    def _declaration(self, node: tree_sitter.Node, state: State) -> State:
+    def _declaration(self, node: Node, state: State) -> State:
         kind = field_of(node, "type")
         words = {text_of(child) for child in node.children if child.type == "storage_class_specifier"}
         is_number = kind is not None and (kind.type in _NUMBERS or text_of(kind) in self._enums)
@@ -117,7 +117,7 @@ class _Walk(Evaluation):
                 self.may_be_set(declarator, state)
         return state
 
-    def _if(self, node: tree_sitter.Node, state: State) -> State:
+    def _if(self, node: Node, state: State) -> State:
         condition = field_of(node, "condition")
         named = self.condition(condition, state)
         then = self._under(named, field_of(node, "consequence"), state.copy())
@@ -127,20 +127,20 @@ class _Walk(Evaluation):
         otherwise = self._under(named, alternative, state.copy())
         return merged([then, otherwise], named)
 
-    def _under(self, named: frozenset[str], node: tree_sitter.Node | None, state: State) -> State:
+    def _under(self, named: frozenset[str], node: Node | None, state: State) -> State:
         self.conditions.append(named)
         state = self.statement(node, state)
         self.conditions.pop()
         return state
 
-    def _while(self, node: tree_sitter.Node, state: State) -> State:
+    def _while(self, node: Node, state: State) -> State:
         condition = field_of(node, "condition")
         named = self.condition(condition, state)
         after, breaks = self._body(named, field_of(node, "body"), state)
         # Most loops run: what each turn sets counts as set.
         return merged(breaks if _is_true(condition) else [after, *breaks], named)
 
-    def _do(self, node: tree_sitter.Node, state: State) -> State:
+    def _do(self, node: Node, state: State) -> State:
         state, breaks = self._body(frozenset(), field_of(node, "body"), state)
         if not state.ended:
             self.condition(field_of(node, "condition"), state)
@@ -148,7 +148,7 @@ class _Walk(Evaluation):
             return merged(breaks)
         return merged([state, *breaks])
 
-    def _for(self, node: tree_sitter.Node, state: State) -> State:
+    def _for(self, node: Node, state: State) -> State:
         outer, hidden = set(state.unset), dict(self.declared)
         state = self.statement(field_of(node, "initializer"), state)
         condition = field_of(node, "condition")
@@ -162,7 +162,7 @@ class _Walk(Evaluation):
         state.unset = {name: unset for name, unset in state.unset.items() if name in outer}
         return state
 
-    def _for_range(self, node: tree_sitter.Node, state: State) -> State:
+    def _for_range(self, node: Node, state: State) -> State:
         whole = field_of(node, "right")
         named = self.condition(whole, state)
         hidden = dict(self.declared)
@@ -172,9 +172,7 @@ class _Walk(Evaluation):
         self.declared = hidden
         return merged([after, *breaks], named)
 
-    def _body(
-        self, named: frozenset[str], node: tree_sitter.Node | None, state: State
-    ) -> tuple[State, list[State]]:
+    def _body(self, named: frozenset[str], node: Node | None, state: State) -> tuple[State, list[State]]:
         """The state where a turn of a loop ends, and those at its breaks.
 
         A turn may follow another one, so the first pass only finds out what that would have set.
@@ -186,15 +184,13 @@ class _Walk(Evaluation):
         self.is_trial = was_trial
         return self._turn(named, node, merged([state, after], named))
 
-    def _turn(
-        self, named: frozenset[str], node: tree_sitter.Node | None, state: State
-    ) -> tuple[State, list[State]]:
+    def _turn(self, named: frozenset[str], node: Node | None, state: State) -> tuple[State, list[State]]:
         self._loops.append(_Loop())
         state = self._under(named, node, state)
         loop = self._loops.pop()
         return merged([state, *loop.turns], named), loop.breaks
 
-    def _switch(self, node: tree_sitter.Node, state: State) -> State:
+    def _switch(self, node: Node, state: State) -> State:
         named = self.condition(field_of(node, "condition"), state)
         body = field_of(node, "body")
         self._loops.append(_Loop(is_switch=True))
@@ -214,32 +210,32 @@ class _Walk(Evaluation):
         # Cases without a `default` may well be all values.
         return merged([current, *self._loops.pop().breaks], named)
 
-    def _break(self, node: tree_sitter.Node, state: State) -> State:
+    def _break(self, node: Node, state: State) -> State:
         if self._loops:
             self._loops[-1].breaks.append(state.copy())
         return State(ended=True)
 
-    def _continue(self, node: tree_sitter.Node, state: State) -> State:
+    def _continue(self, node: Node, state: State) -> State:
         for loop in reversed(self._loops):
             if not loop.is_switch:
                 loop.turns.append(state.copy())
                 break
         return State(ended=True)
 
-    def _leave(self, node: tree_sitter.Node, state: State) -> State:
+    def _leave(self, node: Node, state: State) -> State:
         for child in node.named_children:
             self.expression(child, state)
         return State(ended=True)
 
-    def _expression_statement(self, node: tree_sitter.Node, state: State) -> State:
+    def _expression_statement(self, node: Node, state: State) -> State:
         for child in node.named_children:
             self.expression(child, state)
         return state
 
-    def _nothing(self, node: tree_sitter.Node, state: State) -> State:
+    def _nothing(self, node: Node, state: State) -> State:
         return state
 
-    def condition(self, node: tree_sitter.Node | None, state: State) -> frozenset[str]:
+    def condition(self, node: Node | None, state: State) -> frozenset[str]:
         """Reads a condition, which may declare; the names in it."""
         if node is None:
             return frozenset()
@@ -277,7 +273,7 @@ _STATEMENTS = {
 }
 
 
-def _is_last_case(node: tree_sitter.Node) -> bool:
+def _is_last_case(node: Node) -> bool:
     """Returns whether an `if` without `else` ends a chain that asks the same value for one constant after
     another."""
     asked = _asked(node)
@@ -285,7 +281,7 @@ def _is_last_case(node: tree_sitter.Node) -> bool:
     return bool(asked) and outer is not None and outer.type == "if_statement" and _asked(outer) == asked
 
 
-def _asked(node: tree_sitter.Node) -> str:
+def _asked(node: Node) -> str:
     """Returns the `x` of `if (x == A)`; empty for another condition."""
     condition = field_of(node, "condition")
     while condition is not None and condition.type in ("condition_clause", "parenthesized_expression"):
@@ -295,7 +291,7 @@ def _asked(node: tree_sitter.Node) -> str:
     return field_text(condition, "left")
 
 
-def _is_true(node: tree_sitter.Node | None) -> bool:
+def _is_true(node: Node | None) -> bool:
     while node is not None and node.type in ("condition_clause", "parenthesized_expression"):
         node = node.named_children[0] if node.named_child_count == 1 else None
     return node is not None and text_of(node) in ("true", "1")

@@ -2,7 +2,7 @@
 
 import re
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.facts import Cpp, DeclarationKind
 from aos_language.cpp.keywords import STATES
@@ -36,7 +36,7 @@ def values_meant(cpp: Cpp, names: frozenset[str]) -> tuple[Extent, ...]:
     )
 
 
-def _is_value(node: tree_sitter.Node, variables: set[str]) -> bool:
+def _is_value(node: Node, variables: set[str]) -> bool:
     inner, outer = node, node.parent
     while outer is not None and (
         outer.type in _WRAPPING
@@ -64,7 +64,7 @@ def _is_value(node: tree_sitter.Node, variables: set[str]) -> bool:
     return outer.type == "subscript_argument_list"
 
 
-def _is_of_state(node: tree_sitter.Node | None, variables: set[str]) -> bool:
+def _is_of_state(node: Node | None, variables: set[str]) -> bool:
     """Returns whether this is no response: a part of something, or a name
     that is no number of the code."""
     if node is None:
@@ -74,5 +74,5 @@ def _is_of_state(node: tree_sitter.Node | None, variables: set[str]) -> bool:
     return "__moduleResponse" not in names and (is_part or (bool(names) and variables.isdisjoint(names)))
 
 
-def _mentions_state(node: tree_sitter.Node) -> bool:
+def _mentions_state(node: Node) -> bool:
     return any(part.type == "identifier" and text_of(part) in STATES for part in below(node))

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-import tree_sitter
+from tree_sitter import Node
 
 from aos_language.cpp.nodes import field_of, operator_of
 from aos_language.cpp.tree import tree_of
@@ -41,7 +41,7 @@ def values(expression: str) -> list[tuple[str, str, int]]:
     return found
 
 
-def _values(root: tree_sitter.Node) -> Iterator[tree_sitter.Node]:
+def _values(root: Node) -> Iterator[Node]:
     waiting = [root]
     while waiting:
         node = waiting.pop()

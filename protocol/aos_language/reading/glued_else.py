@@ -6,7 +6,7 @@ Only words that cannot be the end of a name are taken apart, so that `elsewhere`
 import re
 from collections.abc import Iterable
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.cpp.tokens import cut, line_and_column
 from aos_language.findings import Findings
@@ -20,7 +20,7 @@ _GLUED = re.compile(
 
 def with_else_apart(block: Assignment, findings: Findings) -> Assignment:
     """The assignment in which each such word is two, as the warnings say."""
-    return msgspec.structs.replace(
+    return replace(
         block,
         code=_apart(block.code, findings),
         over_previous=_loops_apart(block.over_previous, findings),
@@ -29,7 +29,7 @@ def with_else_apart(block: Assignment, findings: Findings) -> Assignment:
 
 
 def _loops_apart(loops: Iterable[Iteration], findings: Findings) -> tuple[Iteration, ...]:
-    return tuple(msgspec.structs.replace(loop, body=_apart(loop.body, findings)) for loop in loops)
+    return tuple(replace(loop, body=_apart(loop.body, findings)) for loop in loops)
 
 
 def _apart(snippet: Snippet | None, findings: Findings) -> Snippet | None:
@@ -48,4 +48,4 @@ def _apart(snippet: Snippet | None, findings: Findings) -> Snippet | None:
         code = f"{code[: found.start(1)]} {code[found.start(1) :]}"
         escapes = [(at, index + (at == line and index >= column), width) for at, index, width in escapes]
         escapes.append((line, column, 0))  # The blank takes no character of the document.
-    return msgspec.structs.replace(snippet, code=code, escapes=tuple(escapes))
+    return replace(snippet, code=code, escapes=tuple(escapes))

@@ -2,7 +2,7 @@
 
 import re
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.reading.code import joined
 from aos_language.reading.document import check_name, enum_type, normal_type
@@ -36,7 +36,7 @@ def _gone_on(before: Assignment, block: Assignment) -> Assignment | None:
         return None
     if block.temporary or block.over_previous or block.over_next:
         return None
-    return msgspec.structs.replace(before, code=joined(before.code, block.code))
+    return replace(before, code=joined(before.code, block.code))
 
 
 def _assignment(record: Record) -> Assignment | None:

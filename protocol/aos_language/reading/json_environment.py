@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.reading.code import dedented, guarded
 from aos_language.reading.document import array_type, check_name, enum_type, normal_type
@@ -110,7 +110,7 @@ def _types(record: Record) -> tuple[tuple[documents.EnumType, ...], tuple[docume
         if kind.text not in _KINDS and kind.text.lower() in _KINDS:
             hint = f"It is read as {kind.text.lower()}"
             record.findings.warning("AOS127", f"the kind {kind.text}", kind.span, hint)
-            kind = msgspec.structs.replace(kind, text=kind.text.lower())
+            kind = replace(kind, text=kind.text.lower())
         if kind.text not in _KINDS:
             message = f"a type is an enum or a compound, not {kind.text!r}"
             record.findings.error("AOS106", message, kind.span)

@@ -1,6 +1,6 @@
 """The abstraction mapping in JSON (`Glue`, in the paper `AM`)."""
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.findings import Findings
 from aos_language.reading.code import dedented
@@ -43,7 +43,7 @@ def _of_monitor(record: Record, monitor: Text) -> documents.Activation:
         span = record.key_span("ModuleActivation")
         record.findings.error("AOS106", message, span, "Take one of the two out")
         _activation(record)
-    return msgspec.structs.replace(documents.NO_ACTIVATION, span=monitor.span)
+    return replace(documents.NO_ACTIVATION, span=monitor.span)
 
 
 def _responses(record: Record) -> tuple[tuple[documents.ResponseRule, ...], Text | None]:

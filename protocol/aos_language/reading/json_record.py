@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from functools import partial
 from typing import TypeVar
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.findings import Findings
 from aos_language.reading.code import expression, without_blank_lines
@@ -206,7 +206,7 @@ class Record:
     def expression(self, key: str) -> Snippet | None:
         """One C++ expression; a number, true or false stands for itself, a final semicolon is dropped."""
         if (literal := self._literal(key)) is not None:
-            return msgspec.structs.replace(literal, code=literal.code.lower())
+            return replace(literal, code=literal.code.lower())
         snippet = self.code(key)
         if snippet is None:
             return None

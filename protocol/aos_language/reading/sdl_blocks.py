@@ -3,6 +3,7 @@
 import re
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.findings import Findings
 from aos_language.reading.code import expression
@@ -80,9 +81,9 @@ def _add_to_loop(part: Part, loops: list[Iteration] | None, findings: Findings) 
     if not loops:
         findings.error("AOS104", f"this `{part.word}:` belongs to no loop", part.span)
     elif part.word == "loop_body":
-        loops[-1] = msgspec.structs.replace(loops[-1], body=code)
+        loops[-1] = replace(loops[-1], body=code)
     elif code is not None:
-        loops[-1] = msgspec.structs.replace(loops[-1], condition=expression(code, drop_semicolon=True))
+        loops[-1] = replace(loops[-1], condition=expression(code, drop_semicolon=True))
 
 
 def _temporary(part: Part, findings: Findings) -> TemporaryVariable | None:

@@ -3,7 +3,7 @@
 import re
 from itertools import pairwise
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.findings import Findings
 from aos_language.reading.document import check_name, normal_type
@@ -58,7 +58,7 @@ def _calls(
             hint = "It is that of a `monitor:` of the environment document"
             findings.error("AOS105", "`monitor:` needs a name", monitor.span, hint)
             return None
-        return msgspec.structs.replace(documents.NO_ACTIVATION, span=monitor.value.span)
+        return replace(documents.NO_ACTIVATION, span=monitor.value.span)
     if section is None:
         hint = "A mapping without a skill says `monitor: NAME` instead"
         findings.error("AOS105", f"the mapping {name} lacks `module_activation:`", sections.span, hint)

@@ -6,7 +6,7 @@ import logging
 from collections.abc import Callable
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import Cancel, Cancelled, SkillCall, SkillProgress, SkillResult
@@ -128,7 +128,7 @@ class Calls:
                 answer = await self._ended(running)
             result = result_of(call, binding, answer, self._outbox.sent, self._settings.service)
             if lost := self._outbox.lost - lost_before:
-                result = msgspec.structs.replace(result, lost=dict(lost))
+                result = replace(result, lost=dict(lost))
         except AosError as error:
             self._ledger.fail(call.id, error)
             self._tell(last_progress(call, error))

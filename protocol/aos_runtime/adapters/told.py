@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.codec import UNREADABLE
 from aos_runtime.adapters.settings import AdapterSettings
@@ -45,7 +46,7 @@ def settings_told(
         folder = (folder / module).parent
         module = Path(module).stem
     options = {word.partition("=")[0]: _value(word.partition("=")[2]) for word in words[1:]}
-    return msgspec.structs.replace(
+    return replace(
         settings,
         robot=environment["AOS_ROBOT"],
         service=environment["AOS_ADAPTER"],

@@ -5,7 +5,7 @@ import socket
 import uuid
 from collections.abc import Iterable
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.keys import Keys
 from aos_protocol.messages import MissionState, StartMission, Steer, SteeringVerb
@@ -84,7 +84,7 @@ class SteeringQuestions:
         return await ask_until_answered(
             self.bus,
             self.keys.steer_mission,
-            msgspec.structs.replace(wish, request=uuid.uuid4().hex),
+            replace(wish, request=uuid.uuid4().hex),
             MissionState,
             server=self.keys.live("solver"),
             timeout_s=STEER_TIMEOUT_S,

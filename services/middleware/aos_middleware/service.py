@@ -8,7 +8,7 @@ import asyncio
 import logging
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_middleware.activations.activation import refused, run_activation
 from aos_middleware.activations.ledger import OutcomeLedger
@@ -121,7 +121,7 @@ class _Middleware:
         returning = tuple(skill for skill, path in paths.items() if self._served.returning(path))
         announced = {skill: self._served.announced(path) for skill, path in paths.items()}
         self._stamp_ns = max(self._stamp_ns + 1, round(self._service.clock.monotonic_s() * 1e9))
-        return msgspec.structs.replace(
+        return replace(
             self._mappings.state,
             unavailable=unavailable,
             for_good=for_good,
@@ -163,7 +163,7 @@ class _Middleware:
                 hint="Wait for its outcome, or cancel it",
             )
         if request.deadline_s <= 0:
-            request = msgspec.structs.replace(request, deadline_s=self._settings.activation_timeout_s)
+            request = replace(request, deadline_s=self._settings.activation_timeout_s)
         return await self._run(request, evaluator)
 
     async def _run(self, request: Activate, evaluator: Evaluator) -> Outcome:

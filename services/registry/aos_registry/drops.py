@@ -6,7 +6,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.archive import is_archive_name
 from aos_language.load import read_bundle_files
@@ -80,7 +80,7 @@ class DroppedBundles:
         if not report.is_accepted and {
             diagnostic.code for diagnostic in report.diagnostics if diagnostic.is_error
         } & {*LACKING}:
-            report = msgspec.structs.replace(report, is_waiting=True)
+            report = replace(report, is_waiting=True)
             if path in self._from_before:
                 self._waiting[path] = None
                 return

@@ -5,7 +5,7 @@ import logging
 from collections.abc import Mapping
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol import messages
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
@@ -83,7 +83,7 @@ class _Registry:
         if not query.with_files:
             return found
         stored = self._catalogue.revision(project, found.revision)
-        return msgspec.structs.replace(found, files=stored.files if stored is not None else {})
+        return replace(found, files=stored.files if stored is not None else {})
 
     async def _answer_history(self, query: messages.RevisionsQuery, _: str) -> messages.Revisions:
         entries = self._catalogue.history(query.project)

@@ -4,7 +4,7 @@ import logging
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, ModelError
@@ -25,11 +25,11 @@ async def built_for(
     begun: MissionBegun, project: Project, settings: Settings, on_progress: Callable[[str], None]
 ) -> BuiltModel:
     """The model of a revision's documents, with the values that the mission began with."""
-    project = msgspec.structs.replace(project, constraints=settings.constraints, mission_values=())
+    project = replace(project, constraints=settings.constraints, mission_values=())
     built = await build_project(project, Path(settings.cache_dir), on_progress)
     known = built.emitted.parameters
     values = {name: text for name, text in begun.mission_parameters.items() if name in known}
-    return msgspec.structs.replace(built, mission_values=values)
+    return replace(built, mission_values=values)
 
 
 async def earlier_models(

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.errors import AosError, MissionRunsError, SteeringError
 from aos_protocol.messages import DriftTests, MissionBegun, MissionState, StartMission
@@ -219,12 +220,12 @@ class MissionRunner:
         """
         first = earlier[0].model if earlier else running
         begun = await self._succession.at_start_of(first, book.number)
-        first = msgspec.structs.replace(first, engine=begun.engine)
+        first = replace(first, engine=begun.engine)
         if earlier:
             await earlier[0].model.engine.close()
             earlier = (Earlier(first, earlier[0].until), *earlier[1:])
             own = await running.engine.anew(book.seed, book.memory.mission_parameters)
-            first = msgspec.structs.replace(running, engine=own)
+            first = replace(running, engine=own)
         await self._shelf.turn_to(first, self._succession.values(book.start))
         return first, begun.past, earlier
 
@@ -234,7 +235,7 @@ class MissionRunner:
         await self._unless_given_up(self._until_accepted_documents_are_ready())
         running = await self._succession.model(self._shelf, await self._first_model(), start, self.mission)
         begun = await self._unless_given_up(self._succession.next(running, start, self.mission))
-        running = msgspec.structs.replace(running, engine=begun.engine)
+        running = replace(running, engine=begun.engine)
         await self._shelf.turn_to(running, self._succession.values(start))
         drift = self._last_drift()
         self._begin(self._books.open_next(), running, start, begun.past, drift)
@@ -282,7 +283,7 @@ class MissionRunner:
         self._has_begun.set()
 
     def _terms(self, name: str, seed: int, epoch: int, running: RunningModel) -> Terms:
-        search = msgspec.structs.replace(self._settings_as(Search), seed=seed)
+        search = replace(self._settings_as(Search), seed=seed)
         policy = Path(self._settings.policy) if self._settings.policy else None
         return Terms(
             name=name,

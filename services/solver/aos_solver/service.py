@@ -9,7 +9,7 @@ import asyncio
 import logging
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol import messages
 from aos_runtime.failpoints import reach
@@ -172,4 +172,4 @@ class _Solver:
         """Tells people how far a decision is that takes long. The journal has only the decision."""
         mission = self._missions.mission
         if mission is not None and mission.state.phase == "planning":
-            self._ports.publish_state(msgspec.structs.replace(mission.state, remark=progress.text))
+            self._ports.publish_state(replace(mission.state, remark=progress.text))

@@ -8,7 +8,7 @@ import uuid
 from collections.abc import Callable
 from contextlib import suppress
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.errors import AosError, SteeringError
 from aos_protocol.keys import Keys
@@ -55,9 +55,7 @@ class SteeringDesk:
             raise SteeringError("no mission runs", hint="See `aos mission list`")
         if steer.mission not in ("", mission.state.mission):
             raise SteeringError(f"{steer.mission} does not run, {mission.state.mission} does")
-        steer = msgspec.structs.replace(
-            steer, by=steer.by or _SOMEBODY, request=steer.request or uuid.uuid4().hex
-        )
+        steer = replace(steer, by=steer.by or _SOMEBODY, request=steer.request or uuid.uuid4().hex)
         mission.steer(steer)
         self._on_turn()
         if steer.verb == "act":

@@ -16,6 +16,7 @@ from difflib import get_close_matches
 from importlib import import_module
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.check.scope import Scope
 from aos_language.check.shared_calls import check_python_call
@@ -107,14 +108,14 @@ class PythonNames(msgspec.Struct, frozen=True):
     def at_start(self) -> PythonNames:
         """Those of a first value, which is made when there is no local variable yet."""
         known = self.known.difference(self.local_names).union({_PARAMETERS})
-        return msgspec.structs.replace(self, known=known)
+        return replace(self, known=known)
 
     def of_code(self) -> PythonNames:
         """Those of a local variable's code."""
         return self._also({_INPUT})
 
     def _also(self, names: Iterable[str]) -> PythonNames:
-        return msgspec.structs.replace(self, known=self.known.union(names))
+        return replace(self, known=self.known.union(names))
 
 
 def _imported_names(imports: Iterable[Import]) -> frozenset[str] | None:
@@ -226,7 +227,7 @@ def _check_modules(snippet: Snippet, tree: ast.AST, names: PythonNames, findings
                 has = dir(import_module(module)) if module in _LOOKED_INTO else [name]
                 if name not in has:
                     at = place_in(snippet, owner)
-                    span = msgspec.structs.replace(at, column=at.column + len(module) + 1)
+                    span = replace(at, column=at.column + len(module) + 1)
                     message = f"the module {module} has no `{name}`"
                     findings.unknown(name, has, message, span, severity=Severity.WARNING)
 

@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 from typing import Annotated, Any
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.runs.summary import Summary
 from aos_gateway.resources.documents import draws_state
@@ -243,7 +244,7 @@ async def trace(gateway: Gateway, mission: str, query: OfTrace) -> Trace:
     made = await asyncio.to_thread(steps_of, mission, records)
     if records and isinstance(found, KeptRun):
         draws = await asyncio.to_thread(draws_state, found, records[-1].revision)
-        made = msgspec.structs.replace(made, draws=draws)
+        made = replace(made, draws=draws)
     gateway.traces.keep(query.steps, made)
     return made
 

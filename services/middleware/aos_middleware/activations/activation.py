@@ -10,6 +10,7 @@ import logging
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_middleware.activations.heard_topics import QUEUE_SIZE, HeardTopics
 from aos_middleware.activations.no_response import no_response
@@ -180,9 +181,7 @@ class _Activation:
         observed = await self._evaluator.finish({}, "stopped", self.stop.reason)
         if observed.response is None:
             raise self.stop.unexplained(error)
-        return msgspec.structs.replace(
-            self._observation(observed, observed.response), stopped_by=self.stop.by
-        )
+        return replace(self._observation(observed, observed.response), stopped_by=self.stop.by)
 
     def _observation(self, observed: Observed, response: str) -> _Observation:
         return _Observation(

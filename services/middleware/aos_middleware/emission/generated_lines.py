@@ -6,7 +6,7 @@ taken out again after rendering. No line count is kept by hand, and no document 
 
 import re
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_middleware.emission.python_code import LineOrigin, PythonCode
 
@@ -44,7 +44,7 @@ class MarkedLines:
             ]
         first = code.lines[0]
         start = _indented(before, depth)
-        rest = msgspec.structs.replace(code, lines=code.lines[1:])
+        rest = replace(code, lines=code.lines[1:])
         lines = [
             self.line(f"{start}{first.text}", first.origin.indented(len(start))),
             *self.body(rest, depth),

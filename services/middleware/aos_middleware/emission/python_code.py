@@ -13,6 +13,7 @@ import warnings
 from typing import Literal
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.python_syntax import always_returns, module_of, names_bound_by, own_scope, tree_of
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
@@ -43,7 +44,7 @@ class LineOrigin(msgspec.Struct, frozen=True):
 
     def indented(self, width: int) -> LineOrigin:
         """The origin of the same line moved to the right."""
-        return self if self.shift is None else msgspec.structs.replace(self, shift=self.shift + width)
+        return self if self.shift is None else replace(self, shift=self.shift + width)
 
 
 class CodeLine(msgspec.Struct, frozen=True):

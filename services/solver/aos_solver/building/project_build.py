@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.mission_parameters import usable_values
 from aos_protocol.diagnostics import Diagnostic, has_errors
@@ -28,10 +28,10 @@ async def build_project(
     Engines get the project's mission values when they are started: another value compiles nothing.
     DocumentError AOS146 for a value that no parameter can have.
     """
-    emitted = emitted_model(msgspec.structs.replace(project, mission_values=()))
+    emitted = emitted_model(replace(project, mission_values=()))
     values = usable_values(project.mission_values, emitted.parameters)
     built = await build(emitted, cache_dir=cache_dir, on_progress=on_progress, kind=kind)
-    return msgspec.structs.replace(built, mission_values=values)
+    return replace(built, mission_values=values)
 
 
 @lru_cache(maxsize=8)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.messages import ChosenBy
 from aos_solver.child.answers.models import Plan
@@ -72,7 +73,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
         if ahead == self.whole_horizon(engine):
             return plan
         decisions = "one decision" if ahead == 1 else f"{ahead} decisions"
-        return msgspec.structs.replace(plan, why=f"{plan.why}; the step limit leaves {decisions}")
+        return replace(plan, why=f"{plan.why}; the step limit leaves {decisions}")
 
     async def ponder(self, engine: Engine, step: int, index: int) -> None:
         """Look ahead below the action of decision `step` while it is carried out, if that is wanted."""

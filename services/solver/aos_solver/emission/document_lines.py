@@ -3,6 +3,7 @@
 import re
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.diagnostics import Span
 from aos_solver.emission.program import Piece
@@ -71,7 +72,7 @@ class _Lines:
         shift = len(self._note)
         self.lines.append(f"{line[: len(line) - len(code)]}{self._note}{code}".rstrip())
         self.origins[len(self.lines)] = tuple(
-            msgspec.structs.replace(origin, column=origin.column + shift) for origin in origins
+            replace(origin, column=origin.column + shift) for origin in origins
         )
         self._is_in_document = True
         self._next = (span.file, span.line + 1)

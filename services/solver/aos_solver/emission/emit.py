@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.cpp.snippets import read_cpp
 from aos_language.mission_parameters import ParameterLeaf
@@ -87,7 +88,7 @@ class EmittedModel(msgspec.Struct, frozen=True):
 def emit(program: Program) -> EmittedModel:
     cpp, origins = _laid_out(program)
     # Constraints without a cost leave the model what it is: what was solved for it goes on to fit.
-    without = msgspec.structs.replace(program, constraints=())
+    without = replace(program, constraints=())
     is_itself = not program.constraints or any(constraint.cost for constraint in program.constraints)
     return EmittedModel(
         project=program.project,

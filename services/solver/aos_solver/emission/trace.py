@@ -7,6 +7,7 @@ one more store for each is not free. Statements are counted on from the pieces.
 import re
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.cpp.statements import Marks, Statement, marked
 from aos_protocol.diagnostics import Span
@@ -65,9 +66,7 @@ def traced(emitted: EmittedModel) -> TracedModel:
         for number, line in enumerate(text.split("\n"), 1):
             at = _line_of(piece, number, emitted)
             lines[at] = f"{note}{line}" if lines[at].lstrip().startswith(note.rstrip()) else line
-    return TracedModel(
-        msgspec.structs.replace(emitted, cpp="\n".join(lines), snippets=tuple(spans)), tuple(pieces)
-    )
+    return TracedModel(replace(emitted, cpp="\n".join(lines), snippets=tuple(spans)), tuple(pieces))
 
 
 class _Tracing:

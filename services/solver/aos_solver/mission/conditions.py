@@ -8,7 +8,7 @@ are, into a model of their own, and run in the same sandbox. That model's constr
 from collections.abc import Sequence
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.check.constraints import check_conditions
 from aos_language.findings import Findings
@@ -43,7 +43,7 @@ async def built_with_conditions(project: Project, given: Sequence[str], cache_di
     if findings.has_errors:
         raise _refused(findings.sorted())
     constraints = tuple(Constraint(snippet, 0.0) for snippet in snippets)
-    conditioned = msgspec.structs.replace(project, constraints=constraints)
+    conditioned = replace(project, constraints=constraints)
     try:
         return await build_project(conditioned, cache_dir)
     except ModelError as error:

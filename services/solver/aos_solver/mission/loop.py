@@ -7,7 +7,7 @@ move before anything moves.
 
 from collections.abc import Callable, Sequence
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.errors import AosError, SteeringError
 from aos_protocol.messages import (
@@ -252,7 +252,7 @@ class Mission:
         if takeover.model.engine is not before.engine:
             self._chooser.forget_searches()
         if takeover.model.digest != before.digest:
-            self._terms = msgspec.structs.replace(self._terms, search=self._terms.search.after_takeover())
+            self._terms = replace(self._terms, search=self._terms.search.after_takeover())
             self._chooser.search = self._terms.search
         self._ports.journal(ADOPTED, takeover.row)
         if takeover.model.digest != before.digest:
@@ -323,7 +323,7 @@ class Mission:
     async def _act(self, decision: DecisionRecord, intention: Activate | None = None) -> Outcome:
         """The outcome of a decision's activation; what was intended before is asked for as it was."""
         if intention is not None:
-            request = msgspec.structs.replace(intention, epoch=self._terms.epoch)
+            request = replace(intention, epoch=self._terms.epoch)
         else:
             request = self._request(decision)
         self._ports.journal(INTENDED, request)
@@ -354,7 +354,7 @@ class Mission:
         over = overrun(update, update_s, self._terms.search.time_s)
         remark = "; ".join(text for text in (failure, over) if text)
         before = self.drift
-        self.drift = after_use(before, decision, msgspec.structs.replace(decision, outcome=outcome))
+        self.drift = after_use(before, decision, replace(decision, outcome=outcome))
         drift = drifts(before, self.drift, decision.skill)
         self._helm.observed(self._reports.observed(decision, outcome, update, update_s, remark, drift))
         self.belief = update.summary

@@ -8,6 +8,7 @@ the belief was right.
 import sys
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.errors import DocumentError
 from aos_protocol.messages import Activate, DecisionRecord, Outcome
@@ -72,7 +73,7 @@ async def simulate_mission(
         name="simulated",
         limits=limits,
         # Nothing takes time in this world, so that there is none to look ahead in.
-        search=msgspec.structs.replace(search, step_limit=limits.step_limit, ponder_while_acting=False),
+        search=replace(search, step_limit=limits.step_limit, ponder_while_acting=False),
         failures=_NO_CONSEQUENCES,
         is_cautious=False,
     )

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.mission_parameters import mission_value, usable_values
 from aos_protocol.documents import MissionValue, Project
@@ -155,7 +155,7 @@ class Succession:
     async def _conditioned(self, running: RunningModel, start: StartMission, drawn: _Drawn) -> Engine:
         documents = await self._documents(running.revision)
         built = await built_with_conditions(documents, start.given, self._cache_dir)
-        built = msgspec.structs.replace(built, mission_values=drawn.values)
+        built = replace(built, mission_values=drawn.values)
         return await Engine.start(built, seed=drawn.seed)
 
     async def _at_the_end(self, running: RunningModel, begun: Begun, memory: MissionMemory) -> _Kept:
@@ -166,7 +166,7 @@ class Succession:
             # It ended before it could take this outcome.
             steps = (*steps, PastStep(memory.pending.decision, memory.pending.outcome, 0))
         terms = self._terms(memory.begun.mission, memory.begun.seed, memory.epoch, running)
-        memory = msgspec.structs.replace(memory, steps=steps, pending=None, state=None)
+        memory = replace(memory, steps=steps, pending=None, state=None)
         model = RunningModel(running.revision, begun.engine)
         mission = Mission(terms, model, _Over(), memory, begun.past)
         try:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from aos_protocol.errors import IntractableError
 from aos_solver.child.answers.models import Listed
@@ -63,7 +64,7 @@ async def enumerate_model(
     written, flat, texts = await engine.write_listing()
     numbers, states = read_flat(flat), tuple(texts.splitlines())
     if discount is not None:
-        numbers = msgspec.structs.replace(numbers, discount=discount)
+        numbers = replace(numbers, discount=discount)
     actions = tuple(action.name for action in description.actions)
     model = _with_an_end(description.project, numbers, actions, written.observations)
     return Enumeration(model, states, written.left_out)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import PlanningError
@@ -59,7 +60,7 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
 
     def save(self, path: Path) -> None:
         """Writes the file; PlanningError AOS321 if it cannot be."""
-        header = msgspec.structs.replace(self.header, regions=self.vectors.sizes)
+        header = replace(self.header, regions=self.vectors.sizes)
         try:
             data = msgspec.json.encode(header) + b"\n" + self.vectors.to_bytes()
             path.write_bytes(data + _checksum(data))

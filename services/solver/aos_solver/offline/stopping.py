@@ -1,7 +1,7 @@
 """The choice to end the mission at any time, as one more action."""
 
-import msgspec
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from aos_solver.offline.explicit_model import ExplicitModel, with_more_outcomes
@@ -23,7 +23,7 @@ def with_stopping(model: ExplicitModel, value: float) -> ExplicitModel:
     rewards = np.zeros((states + 1, actions + 1))
     rewards[:states, :actions] = model.rewards
     rewards[:states, actions] = np.where(over_states(model), 0.0, value)
-    return msgspec.structs.replace(
+    return replace(
         model,
         states=(*model.states, "stopped"),
         actions=(*model.actions, STOP),

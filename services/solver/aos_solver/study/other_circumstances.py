@@ -4,7 +4,7 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from typing import NamedTuple
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.load import load_files
 from aos_protocol.errors import DocumentError, SkillError, StudyError
@@ -87,9 +87,9 @@ def _told(actions: tuple[ActionValue, ...], planner: str) -> tuple[ActionValue, 
     if planner != "exact":
         return actions
     return tuple(
-        msgspec.structs.replace(value, q=value.at_least, stderr=0.0)
+        replace(value, q=value.at_least, stderr=0.0)
         if value.at_most is None
-        else msgspec.structs.replace(value, q=(value.at_least + value.at_most) / 2, stderr=0.0)
+        else replace(value, q=(value.at_least + value.at_most) / 2, stderr=0.0)
         for value in actions
         if value.at_least is not None
     )
@@ -110,7 +110,7 @@ def _restricted(engine: Engine, query: WhatIfQuery, was: Restriction) -> Restric
     left = [a for n, a in enumerate(engine.description.actions) if n not in gone and a.skill not in without]
     if not left:
         raise StudyError("no action would be left", hint="Forbid fewer")
-    return msgspec.structs.replace(was, barred=barred, without=without)
+    return replace(was, barred=barred, without=without)
 
 
 @asynccontextmanager

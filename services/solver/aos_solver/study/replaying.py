@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol import messages
 from aos_protocol.documents import Project
@@ -100,7 +101,7 @@ class ReplayedMission(Closing):
     def search_by(self, decision: messages.DecisionRecord) -> Search:
         """The way in which a decision was made, with the mission's budget."""
         search = msgspec.convert(self.settings, Search, from_attributes=True)
-        search = msgspec.structs.replace(search, seed=self.begun.seed)
+        search = replace(search, seed=self.begun.seed)
         return following(search, self._policy if decision.chosen_by == "policy" else None)
 
     async def rows(self, until: int | None = None) -> AsyncIterator[Remade]:

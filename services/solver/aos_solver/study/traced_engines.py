@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import NamedTuple
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.errors import StudyError
 from aos_solver.building.build import BuiltModel, build
@@ -68,7 +68,7 @@ class TracedEngines:
     async def _start(self, model: BuiltModel) -> TracedEngine:
         emitted = traced(model.emitted).emitted
         built = await build(emitted, cache_dir=self._cache_dir, niceness=self._niceness)
-        built = msgspec.structs.replace(built, mission_values=model.mission_values)
+        built = replace(built, mission_values=model.mission_values)
         return TracedEngine(await Engine.start(built, seed=1, niceness=self._niceness), built)
 
     async def close(self) -> None:

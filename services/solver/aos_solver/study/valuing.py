@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Self
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.messages import ActionValue, DecisionRecord, SearchMade
 from aos_solver.child.answers.models import Plan
@@ -115,9 +116,7 @@ class Valuing:
             found = await engine.exact_values(self.horizon, cautious=self.within.cautious)
             values = {value.action: Value(value.q, n=1) for value in found.actions}
         else:
-            within = (
-                msgspec.structs.replace(self.within, barred=(), cautious=False) if anywhere else self.within
-            )
+            within = replace(self.within, barred=(), cautious=False) if anywhere else self.within
             plan = await self._with(share).run(engine, self._step, within)
             values = _values_of(plan)
         return values if anywhere else {name: v for name, v in values.items() if name not in self.barred}
@@ -132,16 +131,14 @@ class Valuing:
         actions = engine.description.actions
         barred = [number for number, each in enumerate(actions) if each.name != action]
         cautious = self.within.cautious and not is_moved
-        within = msgspec.structs.replace(self.within, barred=barred, cautious=cautious)
+        within = replace(self.within, barred=barred, cautious=cautious)
         plan = await self._with(share).run(engine, self._step, within)
         return _values_of(plan)[action]
 
     def _with(self, share: float) -> Search:
         if self._search.time_s is not None:
-            return msgspec.structs.replace(self._search, time_s=self._search.time_s * share)
-        return msgspec.structs.replace(
-            self._search, simulations=max(round(self._search.simulations * share), 1)
-        )
+            return replace(self._search, time_s=self._search.time_s * share)
+        return replace(self._search, simulations=max(round(self._search.simulations * share), 1))
 
 
 def _values_of(plan: Plan) -> dict[str, Value]:

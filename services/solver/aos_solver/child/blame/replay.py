@@ -14,6 +14,7 @@ from collections.abc import Coroutine, Sequence
 from typing import Any, TypeVar
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.errors import AosError, CodeFaultError, EndlessCodeError, ModelError, error_from_code
@@ -70,7 +71,7 @@ def _moved(fault: CodeFaultError, found: _Found) -> AosError:
     hint = "Look at this statement"
     # Of code that does not come to an end the state is known now.
     message = found.message if found.message.startswith(original.message) else original.message
-    diagnostic = msgspec.structs.replace(original, span=found.span, message=message, hint=hint)
+    diagnostic = replace(original, span=found.span, message=message, hint=hint)
     text = f"{found.span}: {message}"
     return error_from_code(fault.code, text, hint=hint, diagnostics=(diagnostic,))
 

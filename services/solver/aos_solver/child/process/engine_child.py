@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Literal, Self, TypeVar
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol import errors
 from aos_protocol.codec import UNREADABLE
@@ -127,7 +128,7 @@ class EngineChild:
         kept = -1 if start.beliefs is None else start.beliefs.descriptor
         arguments = [str(blame.descriptor), str(kept), str(draws_of(start.seed)), start.policy, str(periods)]
         arguments += start.mission_values
-        limits = msgspec.structs.replace(_LIMITS, niceness=start.niceness or None)
+        limits = replace(_LIMITS, niceness=start.niceness or None)
         try:
             child = await Child.start(
                 guarded([str(built.executable), *arguments], limits, confinement_of(built.executable)),

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Self, TypeVar
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.mission_parameters import ParameterLeaf
 from aos_protocol.errors import AosError, ModelError
@@ -132,7 +133,7 @@ class Asking(Closing):
 
     def _built_with(self, mission_values: Mapping[str, str]) -> BuiltModel:
         values = {name: text for name, text in mission_values.items() if name in self.parameters}
-        return msgspec.structs.replace(self._built, mission_values=values)
+        return replace(self._built, mission_values=values)
 
     async def forget(self) -> None:
         """Starts the child anew with what is believed, as after a crash: searches begin without a tree."""

@@ -4,7 +4,7 @@ import logging
 from collections.abc import Mapping
 from typing import Any
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary, WeightedStates
@@ -105,7 +105,7 @@ class BeliefQuestions(Asking):
         )
         log.warning("%s", remark)
         remark = f"{remark}; {update.remark}" if update.remark else remark
-        return msgspec.structs.replace(update, remark=remark)
+        return replace(update, remark=remark)
 
     def has_monitored(self, monitor: str, response: str) -> bool:
         """Returns whether the model has such a monitor with such a response."""
@@ -146,7 +146,7 @@ class BeliefQuestions(Asking):
             why = (await self._correction_fault(update.uncorrected, command, before)).message
         remark = f"the local variables of {action} do not correct the belief: {why}"
         log.warning("%s", remark)
-        return msgspec.structs.replace(update, remark=remark)
+        return replace(update, remark=remark)
 
     async def _correction_fault(self, fault: EngineFault, command: str, before: int) -> AosError:
         """Returns why local variables did not correct the belief that was there after so many changes.

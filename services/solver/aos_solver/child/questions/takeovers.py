@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.messages import BeliefSummary, Marginal
 from aos_solver.child.answers.beliefs import BeliefCount, BeliefUpdate
@@ -76,7 +77,7 @@ class TakeoverQuestions(Asking):
             rows += (
                 await self._ask(command_line("export_joint", first=len(rows), **fields), JointBelief)
             ).rows
-        return msgspec.structs.replace(belief, rows=tuple(rows))
+        return replace(belief, rows=tuple(rows))
 
     async def project(self, joint: JointBeliefs, common: Common) -> BeliefSummary:
         """Takes over what an engine believes that has the variables in common.

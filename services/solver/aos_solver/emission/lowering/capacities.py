@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Access, Call, Cpp, Declaration, Mention, strip_comments
@@ -129,7 +130,7 @@ class Capacities:
                 is_filled = any(argument.start <= mention.extent.start < argument.end for argument in filled)
                 for start in aliases.get(mention.path[0], [mention.path[:1]]):
                     path = (*start, *mention.path[1:])
-                    self._take_mention(msgspec.structs.replace(mention, path=path), code, scope)
+                    self._take_mention(replace(mention, path=path), code, scope)
                     if is_filled:
                         self._grow(self._key(path), scope)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Self
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.cpp.goal_conditions import Edits, counted_conditions
 from aos_language.cpp.loops import Scope, loops_of
@@ -98,7 +99,7 @@ class Pieces:
     def _numbered(self, of_loops: LoopsOfPiece) -> LoopsOfPiece:
         first = self._loops + 1
         self._loops += len(of_loops.loops)
-        return msgspec.structs.replace(of_loops, first=first)
+        return replace(of_loops, first=first)
 
     def expression(self, snippet: Snippet, rewriting: Rewriting) -> Piece:
         return self._make(snippet, read_cpp_expression(snippet.code), rewriting)
@@ -181,7 +182,7 @@ class SectionLowering:
         """The lowering of the sections of this mapping's skill or monitor."""
         names = frozenset(rule.response for rule in mapping.rules) & self.outside.values
         its = copy.copy(self)
-        its.outside = msgspec.structs.replace(self.outside, responses=names)
+        its.outside = replace(self.outside, responses=names)
         return its
 
     def goal_conditions(self, phase: Phase, assignments: tuple[Assignment, ...]) -> Section | None:
@@ -194,7 +195,7 @@ class SectionLowering:
     def goal_condition(self, condition: Snippet) -> Piece | None:
         """The same of a special state's condition."""
         (edits,) = counted_conditions([read_cpp_expression(condition.code)], is_expression=True) or ((),)
-        rewriting = msgspec.structs.replace(self.outside, counted={condition.code: edits})
+        rewriting = replace(self.outside, counted={condition.code: edits})
         return self._pieces.expression(condition, rewriting) if edits else None
 
     def section(
@@ -205,7 +206,7 @@ class SectionLowering:
         if not any(a.temporary for a in assignments) and all(cpp.is_empty for _, cpp in read):
             return None
         enums = {**self.outside.enums, **_local_enums(cpp for _, cpp in read)}
-        rewriting = msgspec.structs.replace(self.outside, enums=enums, counted=counted)
+        rewriting = replace(self.outside, enums=enums, counted=counted)
         names = frozenset(mention.path[0] for _, cpp in read for mention in cpp.mentions)
         scope = _drawing(self.outside.drawing).with_variables(phase.changes | (names & _RESULTS))
         of_loops = _loops_of(assignments, scope)

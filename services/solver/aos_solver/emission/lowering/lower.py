@@ -7,6 +7,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_language.cpp.absent import without_null
 from aos_language.cpp.keywords import STATES
@@ -245,7 +246,7 @@ class _Lowering:
         self, special_states: tuple[SpecialState, ...], skills: tuple[LoweredSkill, ...]
     ) -> tuple[tuple[SpecialState, ...], tuple[LoweredSkill, ...]]:
         """Adds the code that counts conditions, where a reward or goal has several."""
-        code, replace = self._code, msgspec.structs.replace
+        code = self._code
         counted = []
         for special, lowered in zip(self._project.environment.special_states, special_states, strict=True):
             if lowered.section is not None:
@@ -295,7 +296,7 @@ class _Lowering:
             keeps_state=copies.keeps_state,
             keeps_state_=copies.keeps_state_,
         )
-        return msgspec.structs.replace(lowered, locals=_locals(mapping, lowered))
+        return replace(lowered, locals=_locals(mapping, lowered))
 
 
 def skills_looked_for(project: Project) -> tuple[str, ...]:
@@ -318,7 +319,6 @@ def _without_absent(project: Project, absent: tuple[str, ...]) -> Project:
     def cut_loops(loops: tuple[Iteration, ...]) -> tuple[Iteration, ...]:
         return tuple(replace(loop, condition=cut(loop.condition), body=cut(loop.body)) for loop in loops)
 
-    replace = msgspec.structs.replace
     changes = tuple(
         replace(
             each,
@@ -361,7 +361,7 @@ def _digest(project: Project) -> str:
     it."""
     parts = [
         project.name,
-        msgspec.structs.replace(project.environment, shared_mapping_code=None),
+        replace(project.environment, shared_mapping_code=None),
         [constant.name for constant in project.low_level.constants] if project.low_level is not None else [],
         [
             (

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.messages import ActionRefused, DecisionRecord, Steer
 
@@ -56,33 +57,33 @@ class Steering(msgspec.Struct, frozen=True):
 
     def after(self, steer: Steer, *, is_holding: bool) -> Steering:
         """The state after somebody has steered a mission that holds, or not."""
-        now = msgspec.structs.replace(self, requests=(*self.requests, steer.request)[-_REMEMBERED:])
+        now = replace(self, requests=(*self.requests, steer.request)[-_REMEMBERED:])
         match steer.verb:
             case "hold":
-                return msgspec.structs.replace(now, held_by=steer.by, steps=0, queue=())
+                return replace(now, held_by=steer.by, steps=0, queue=())
             case "step":
-                return msgspec.structs.replace(now, held_by=self.held_by or steer.by, steps=self.steps + 1)
+                return replace(now, held_by=self.held_by or steer.by, steps=self.steps + 1)
             case "resume":
-                return msgspec.structs.replace(now, held_by="", steps=0)
+                return replace(now, held_by="", steps=0)
             case "stop":
-                return msgspec.structs.replace(now, to_stop=steer.reason or f"stopped by {steer.by}")
+                return replace(now, to_stop=steer.reason or f"stopped by {steer.by}")
             case "leave_out":
-                return msgspec.structs.replace(now, left_out={**self.left_out, steer.name: steer.by})
+                return replace(now, left_out={**self.left_out, steer.name: steer.by})
             case "take_back":
                 left = {name: by for name, by in self.left_out.items() if name != steer.name}
-                return msgspec.structs.replace(now, left_out=left)
+                return replace(now, left_out=left)
         is_script = steer.verb == "script"
         queue = [Asked(action, steer.request, steer.by, is_script) for action in steer.actions]
         # A mission that holds for a skill does not go on by itself after what an operator does about it.
         held_by = self.held_by or (steer.by if is_holding else "")
-        return msgspec.structs.replace(now, queue=(*self.queue, *queue), held_by=held_by)
+        return replace(now, queue=(*self.queue, *queue), held_by=held_by)
 
     def decided(self, decision: DecisionRecord) -> Steering:
         """The state after a decision."""
         if decision.chosen_by in ("operator", "script"):
             current = self.queue[0] if self.queue else None
-            return msgspec.structs.replace(self, queue=self.queue[1:], current=current)
-        return msgspec.structs.replace(self, steps=max(self.steps - 1, 0), current=None)
+            return replace(self, queue=self.queue[1:], current=current)
+        return replace(self, steps=max(self.steps - 1, 0), current=None)
 
     def observed(self, record: DecisionRecord) -> Steering:
         """The state after an outcome: a script ends with an activation that brought no observation."""
@@ -94,14 +95,14 @@ class Steering(msgspec.Struct, frozen=True):
         """The state after an action was refused."""
         asked = next((asked for asked in self.queue if asked.request == row.request), None)
         refusals = {name: known for name, known in self.refusals.items() if name in self.requests}
-        now = msgspec.structs.replace(self, refusals={**refusals, row.request: row})
+        now = replace(self, refusals={**refusals, row.request: row})
         if asked is not None and asked.is_script:
             return now._without_script(asked)
         left = tuple(each for each in self.queue if each.request != row.request)
-        return msgspec.structs.replace(now, queue=left)
+        return replace(now, queue=left)
 
     def _without_script(self, asked: Asked | None) -> Steering:
         assert asked is not None
         left = tuple(each for each in self.queue if each.request != asked.request)
         by = self.held_by or f"the script of {asked.by}"
-        return msgspec.structs.replace(self, queue=left, held_by=by)
+        return replace(self, queue=left, held_by=by)

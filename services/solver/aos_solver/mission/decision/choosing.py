@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.messages import ActionValue, BeliefSummary, ChosenBy, SearchMade
 from aos_protocol.unavailable import told_together
@@ -323,4 +324,4 @@ def _kept_back(plan: Plan, barred: Mapping[str, str]) -> dict[str, str]:
 def _explained(plan: Plan, reasons: Mapping[str, str], is_cautious: bool, told: list[str]) -> Plan:
     """The plan, which says why it does without skills and actions, and what else was `told`."""
     texts = [plan.why, *reasons.values(), *([_CAUTIOUSLY] if is_cautious else []), *told]
-    return msgspec.structs.replace(plan, why="; ".join(text for text in texts if text))
+    return replace(plan, why="; ".join(text for text in texts if text))

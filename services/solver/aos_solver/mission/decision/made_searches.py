@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.messages import SearchMade
 
@@ -24,7 +24,7 @@ class MadeSearches:
         """The last search decides nothing, but the one before it."""
         if len(self._made) > 1:
             *others, decided, dropped = self._made
-            self._made = [*others, msgspec.structs.replace(decided, is_dropped=False), *_dropped([dropped])]
+            self._made = [*others, replace(decided, is_dropped=False), *_dropped([dropped])]
 
     def told(self, *, are_dropped: bool = False) -> tuple[SearchMade, ...]:
         """The searches, which are told once. None of them decided if they `are_dropped`."""
@@ -40,4 +40,4 @@ class MadeSearches:
 
 
 def _dropped(searches: Sequence[SearchMade]) -> tuple[SearchMade, ...]:
-    return tuple(msgspec.structs.replace(made, is_dropped=True) for made in searches)
+    return tuple(replace(made, is_dropped=True) for made in searches)

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.findings import Findings
 from aos_language.mission_parameters import ParameterLeaf, checked_values, usable_values
@@ -33,7 +33,7 @@ class MissionValues:
         may come: the values that do not fit are told when it begins.
         """
         kept = (MissionValue(name, text, NOWHERE) for name, text in self.kept.items() if name in leaves)
-        values = [msgspec.structs.replace(v, span=span or v.span) for v in (*kept, *self.given)]
+        values = [replace(v, span=span or v.span) for v in (*kept, *self.given)]
         if is_first:
             return checked_values(values, leaves, Findings())
         return usable_values(values, leaves)

@@ -12,7 +12,7 @@ import logging
 from collections.abc import Awaitable, Callable, Mapping
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.mission_parameters import ParameterLeaf, usable_values
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
@@ -114,10 +114,10 @@ class ModelShelf:
             self._shelf.notify_all()
 
     async def _built(self, project: Project) -> BuiltModel:
-        constrained = msgspec.structs.replace(project, constraints=self._constraints)
+        constrained = replace(project, constraints=self._constraints)
         built = await build_project(constrained, self._cache_dir, self._on_progress)
         values = self._values_in(built.emitted.parameters, project.environment.span)
-        return msgspec.structs.replace(built, mission_values=values)
+        return replace(built, mission_values=values)
 
     def _values_in(self, leaves: Mapping[str, ParameterLeaf], span: Span | None = None) -> dict[str, str]:
         return self.values.in_model(leaves, span, is_first=self._running is None)

@@ -8,6 +8,7 @@ from collections.abc import AsyncIterator, Iterable, Mapping
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.documents import DEFAULT_RESPONSE
 from aos_protocol.errors import ModelError
@@ -37,13 +38,13 @@ def evidence_of(decision: DecisionRecord, outcome: Outcome, failures: Failures) 
     """The step as a belief sees it."""
     evidence = Evidence(decision.action, decision.skill, monitors=outcome.monitors)
     if outcome.status == "observed":
-        return msgspec.structs.replace(
+        return replace(
             evidence,
             response=outcome.response,
             local_variables=outcome.local_variables,
             numbers=outcome.numbers,
         )
-    return msgspec.structs.replace(evidence, ran_probability=failures.ran_probability(outcome))
+    return replace(evidence, ran_probability=failures.ran_probability(outcome))
 
 
 class Beginning(msgspec.Struct, frozen=True):
@@ -106,12 +107,12 @@ async def updated(
             seen = await engine.update_by_monitor(monitor, response, refuted_below)
             remark = f"the model excludes that {monitor} says {response}" if seen.is_impossible else ""
             excludes = update.excludes_monitor or seen.is_impossible
-            update = msgspec.structs.replace(update, summary=seen.summary, excludes_monitor=excludes)
+            update = replace(update, summary=seen.summary, excludes_monitor=excludes)
         else:
             remark = f"the model has no monitor {monitor} that says {response}"
         if remark:
             text = f"{update.remark}; {remark}" if update.remark else remark
-            update = msgspec.structs.replace(update, remark=text)
+            update = replace(update, remark=text)
     return update
 
 
@@ -122,7 +123,7 @@ async def _stepped(
     if evidence.response is None and evidence.ran_probability == 0:
         return BeliefUpdate(0.0, False, await engine.summary())
     if _is_foreign(engine, evidence):
-        return msgspec.structs.replace(await engine.pass_time(step=number), is_foreign=True)
+        return replace(await engine.pass_time(step=number), is_foreign=True)
     if evidence.response is None:
         return await engine.update_without_observation(
             evidence.action, ran_probability=evidence.ran_probability, step=number

@@ -1,6 +1,6 @@
 """The trial of documents that are pushed into a mission: random actions, and a decision."""
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_language.check.endings import may_be_goal
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
@@ -53,4 +53,4 @@ async def _slow(engine: Engine, step_s: float, environment: Span) -> Diagnostic:
 
 
 def _reached(found: Diagnostic) -> Diagnostic:
-    return msgspec.structs.replace(found, message=f"in a state that can be reached: {found.message}")
+    return replace(found, message=f"in a state that can be reached: {found.message}")

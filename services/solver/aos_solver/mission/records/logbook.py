@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import Message, MissionBegun, MissionEntry, MissionState, StartMission
@@ -40,11 +40,11 @@ class Logbook:
     def end(self, state: MissionState) -> None:
         """Writes the end of a mission that has not begun."""
         self.append(STATE, state)
-        self.memory = msgspec.structs.replace(self.memory, state=state)
+        self.memory = replace(self.memory, state=state)
 
     def forget_steps(self) -> None:
         """Lets go of what is needed once: a long mission has many steps."""
-        self.memory = msgspec.structs.replace(self.memory, steps=(), pending=None)
+        self.memory = replace(self.memory, steps=(), pending=None)
 
     def close(self) -> None:
         self._journal.close()
@@ -160,8 +160,4 @@ def _entry(path: Path, number: int) -> list[MissionEntry]:
         return [entry]
     state = states[-1].read_as(MissionState)
     ended_ns = states[-1].stamp_ns if state.phase == "ended" else 0
-    return [
-        msgspec.structs.replace(
-            entry, ended_ns=ended_ns, ending=state.ending, remark=state.remark, steps=state.step
-        )
-    ]
+    return [replace(entry, ended_ns=ended_ns, ending=state.ending, remark=state.remark, steps=state.step)]

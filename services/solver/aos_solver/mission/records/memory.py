@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import msgspec
+from msgspec.structs import replace
 
 from aos_protocol import messages
 from aos_protocol.errors import StorageError
@@ -147,7 +148,7 @@ def _is_holding(state: messages.MissionState | None) -> bool:
 
 
 def _without_search(decision: messages.DecisionRecord) -> messages.DecisionRecord:
-    return msgspec.structs.replace(decision, actions=(), predicted=(), belief=_NO_BELIEF, why="", searches=())
+    return replace(decision, actions=(), predicted=(), belief=_NO_BELIEF, why="", searches=())
 
 
 def _of(pending: Pending | None, row: JournalRow) -> Pending:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol import messages
 from aos_protocol.mission_rows import DECISION, STATE
@@ -85,7 +85,7 @@ class Reports:
         """Reports the outcome of a decision, and the belief after it; the `remark` is for people."""
         alarms = [text_of(alarm) for alarm in drift if alarm.is_new]
         remarks = (update.remark, remark, *_faults_of_monitors(outcome), *outcome.notices, *alarms)
-        record = msgspec.structs.replace(
+        record = replace(
             decision,
             sequence=self._sequence,
             stamp_ns=self._ports.clock.now_ns(),
@@ -113,7 +113,7 @@ class Reports:
 
     def stand_at(self, step: int) -> None:
         """Takes up a mission at this step, which was reported before."""
-        self.state = msgspec.structs.replace(self.state, step=step)
+        self.state = replace(self.state, step=step)
 
     def move_to(
         self, phase: str, step: int, model: RunningModel, belief: messages.BeliefSummary, remark: str
@@ -142,7 +142,7 @@ class Reports:
     def _change_state(self, **changes: Any) -> None:
         steering = self._steering
         is_over = changes.get("phase", self.state.phase) == "ended"
-        self.state = msgspec.structs.replace(
+        self.state = replace(
             self.state,
             held_by="" if is_over else steering.held_by,
             left_out=dict(steering.left_out),

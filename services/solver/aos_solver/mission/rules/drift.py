@@ -10,7 +10,7 @@ likelihood ratios: Robbins, 1970). It alarms where it reaches the number of test
 import math
 from collections.abc import Mapping, Sequence
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_protocol.messages import BeliefSummary, DecisionRecord, DriftTest, DriftTests, ModelDrift
 
@@ -62,7 +62,7 @@ def after_use(tests: DriftTests, decision: DecisionRecord, record: DecisionRecor
         probability = min(max(predicted.get(test.response, 0.0), 0.0), 1.0)
         doubt = _doubt(probability, decision.belief)
         after.append(_after(test, outcome.response == test.response, probability, doubt, tests.count))
-    return msgspec.structs.replace(tests, tests=tuple(after))
+    return replace(tests, tests=tuple(after))
 
 
 def drifts(before: DriftTests, after: DriftTests, skill: str) -> tuple[ModelDrift, ...]:
