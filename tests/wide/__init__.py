@@ -1,4 +1,4 @@
-"""Problems whose states cannot be listed, each with a rule by hand as its reference."""
+"""Problems whose states cannot be listed, each beside what a rule by hand returns."""
 
 import sys
 from pathlib import Path

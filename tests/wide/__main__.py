@@ -12,17 +12,13 @@ second, and the third is the longest. The budget is for the *search*; lists and 
 
 import argparse
 import asyncio
-import random
 import tempfile
 from pathlib import Path
 
-import numpy as np
-
-from .kept import KEPT, Problem
+from .kept import KEPT
 from .missions import Played, played
 
 _STEPS = 120  # at most, in a mission
-_MISSIONS = 200  # by hand
 
 
 def main():
@@ -48,25 +44,9 @@ def main():
             if name in KEPT:
                 problem, size = KEPT[name], arguments.size or KEPT[name].size
                 bundle = problem.write(Path(folder) / f"{name}{size}", size)
-                rule = "".join(
-                    f"{what} {mean:.1f} +- {error:.1f}, "
-                    for what, (mean, error) in by_hand(problem, size, arguments.seed).items()
-                )
+                rule = f"{problem.by_hand}, " if size == problem.size else ""
             found = asyncio.run(played(bundle, arguments.planner, arguments.time, seeds, _STEPS))
         print(f"{bundle.name}: {rule}{_text(found)}", flush=True)
-
-
-def by_hand(problem: Problem, size: int, seed: int) -> dict[str, tuple[float, float]]:
-    seeds = [f"{seed}/{mission}" for mission in range(_MISSIONS)]
-    returns = {"rule": [problem.rule(size, random.Random(each)) for each in seeds]}
-    if problem.world is not None:
-        worlds = [problem.world(size, random.Random(each)) for each in seeds]
-        returns["random"] = [world.play_at_random() for world in worlds]
-    return {what: _mean(values) for what, values in returns.items()}
-
-
-def _mean(returns: list[float]) -> tuple[float, float]:
-    return float(np.mean(returns)), float(np.std(returns, ddof=1) / len(returns) ** 0.5)
 
 
 def _text(found: Played) -> str:

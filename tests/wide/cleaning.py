@@ -1,6 +1,4 @@
-"""A robot with a battery and a bin that keeps rooms clean and is paid for nothing: documents and a rule."""
-
-import random
+"""A robot with a battery and a bin that keeps rooms clean and is paid for nothing."""
 
 from .writing import Bundle, BundleWriter
 
@@ -91,32 +89,3 @@ if (state_.at == 0) {
     charge = f"if (state_.at == 0) state__.battery = std::min(state_.battery + {_CHARGE}, {_BATTERY});\n"
     writer.skill("charge", charge + home)
     return writer.files
-
-
-def cleaning_rule(rooms: int, rng: random.Random) -> float:
-    dirt = [rng.choices((0, 1, 2), (0.5, 0.3, 0.2))[0] for _ in range(rooms)]
-    odds = [_BUSY if rng.random() < 0.4 else _QUIET for _ in range(rooms)]
-    at, battery, filled, target = 0, _BATTERY, 0, 1
-    earned, discount = 0.0, 1.0
-    for _ in range(120):
-        earned -= discount * (0.25 * sum(dirt) + (battery == 0 and at > 0))
-        dirt = [min(d + (rng.random() < p), 3) for d, p in zip(dirt, odds, strict=True)]
-        if battery == 0 and at > 0 and rng.random() < _BROUGHT_HOME:
-            at, battery = 0, _CHARGE
-        goes_home = at > 0 and (filled == _BIN or battery < at + 4)
-        if battery == 0 and at > 0:
-            pass  # nothing can be done
-        elif at == 0 and filled > 0:
-            earned, filled = earned - 0.1 * discount, 0
-        elif at == 0 and battery < _BATTERY:
-            battery = min(battery + _CHARGE, _BATTERY)
-        elif goes_home or at != target:
-            step = -1 if goes_home or at > target else 1
-            at = min(max(at + step, 0), rooms) if rng.random() < _MOVES else at
-            earned, battery = earned - 0.05 * discount, battery - 1
-        else:
-            dirt[at - 1] = max(dirt[at - 1] - 2, 0) if rng.random() < _CLEANS else dirt[at - 1]
-            earned, filled, battery = earned - 0.1 * discount, filled + 1, battery - 2
-            target = target % rooms + 1
-        discount *= _DISCOUNT
-    return earned

@@ -1,8 +1,5 @@
 """Gauges that are read by a camera, which dust blinds bit by bit, and which may break."""
 
-import random
-
-from .world import World
 from .writing import Bundle, BundleWriter
 
 _BAD, _DUST, _BREAKS, _SHARP, _BLUR = 0.3, 0.25, 0.02, 0.95, 0.13
@@ -66,63 +63,3 @@ if (can) state__.is_told[gauge] = true;
 __moduleResponse = told;"""
     writer.skill("report", report, over={"bad": "2"})
     return writer.files
-
-
-class Gauges(World):
-    """The camera and the gauges as the documents describe them."""
-
-    def __init__(self, count: int, rng: random.Random):
-        super().__init__(rng, 0.98, drive=count + 1, read=1, check=1, wipe=1, swap=1, report=2)
-        self.bad = [rng.random() < _BAD for _ in range(count)]
-        self.told = [False] * count
-        self.at, self.dust, self.is_broken = count, 0, False
-
-    def act(self, skill: str, value: int = 0) -> str:
-        base, draw = len(self.bad), self.rng.random
-        is_sharp = draw() < (0.5 if self.is_broken else _SHARP - _BLUR * self.dust)
-        reward, answer = -0.4, ""
-        if draw() < _DUST:
-            self.dust = min(self.dust + 1, 3)
-        self.is_broken |= draw() < _BREAKS
-        if skill == "drive":
-            self.at = value
-        elif skill == "read":
-            reward = -0.2
-            if self.at != base:
-                answer = "bad" if is_sharp == self.bad[self.at] else "fine"
-        elif skill == "check":
-            reward, answer = -0.2, "clear" if self.at == base and is_sharp else "blurred"
-        elif skill == "wipe":
-            reward, self.dust = -0.6, 0
-        elif skill == "swap":
-            reward = -2.0
-            if self.at == base:
-                self.dust, self.is_broken = 0, False
-        elif self.at == base or self.told[self.at]:
-            reward = -1.0
-        else:
-            reward, self.told[self.at] = (3.0 if self.bad[self.at] == (value == 1) else -5.0), True
-            self.has_ended = all(self.told)
-        self.gain(reward)
-        return answer
-
-
-def gauges_rule(count: int, rng: random.Random) -> float:
-    """Wipes at each second gauge, reads until one answer leads by two; fetches a camera after seven reads."""
-    world = Gauges(count, rng)
-    for gauge in range(count):
-        world.act("drive", gauge)
-        if gauge % 2:
-            world.act("wipe")
-        lead, reads = 0, 0
-        while abs(lead) < 2 and not world.is_over:
-            lead += 1 if world.act("read") == "bad" else -1
-            reads += 1
-            if reads == 7:
-                world.act("drive", count)
-                world.act("swap")
-                world.act("drive", gauge)
-                lead = reads = 0
-        if not world.is_over:
-            world.act("report", int(lead > 0))
-    return world.earned

@@ -1,6 +1,4 @@
-"""Plants that dry out and a tank: nothing is rewarded, what is neglected costs. The documents, and a rule."""
-
-import random
+"""Plants that dry out and a tank: nothing is rewarded, what is neglected costs."""
 
 from .writing import Bundle, BundleWriter
 
@@ -70,27 +68,3 @@ if (state.at == {bays}) state__.tank = {_TANK};
 __moduleResponse = state.at == {bays} ? full : refused;"""
     writer.skill("refill", refill)
     return writer.files
-
-
-def greenhouse_rule(bays: int, rng: random.Random) -> float:
-    """Go round, water both plants of each bay without a look, and refill below two fillings."""
-    plants = range(2 * bays)
-    moisture = [2 + rng.choices((0, 1, 2), (0.4, 0.4, 0.2))[0] for _ in plants]
-    odds = [0.14 if rng.random() < 0.3 else 0.05 for _ in plants]
-    at, tank, bay, watered = bays, _TANK, 0, 0
-    earned, discount = 0.0, 1.0
-    for _ in range(120):
-        moisture = [max(m - (rng.random() < p), 0) for m, p in zip(moisture, odds, strict=True)]
-        if at == bays and tank < _TANK:
-            tank, reward = _TANK, -0.5
-        elif at == bay and tank > 0:
-            moisture[2 * bay + watered] = 4 if rng.random() < 0.9 else moisture[2 * bay + watered]
-            tank, watered, reward = tank - 1, watered + 1, -0.2
-        else:
-            place = bays if tank < 2 else bay
-            at, reward = place if rng.random() < 0.95 else at, -0.3
-        if watered == 2:
-            bay, watered = (bay + 1) % bays, 0
-        earned += discount * (reward - moisture.count(0))
-        discount *= 0.97
-    return earned

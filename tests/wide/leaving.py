@@ -3,11 +3,6 @@
 Values of seen states promise much in all of them.
 """
 
-import random
-
-import numpy as np
-
-from .world import World
 from .writing import Bundle, BundleWriter
 
 _DISCOUNT = 0.98
@@ -60,36 +55,6 @@ __moduleResponse = left;"""
     return writer.files
 
 
-class Survey(World):
-    """The sites as the documents describe them."""
-
-    def __init__(self, sites: int, rng: random.Random):
-        super().__init__(rng, _DISCOUNT, drive=2, probe=1, dig=1, leave=1)
-        self.good = [rng.random() < _GOOD for _ in range(sites)]
-        self.taken = [False] * sites
-        self.at = 0
-
-    def act(self, skill: str, value: int = 0) -> str:
-        told, reward = "", -0.5
-        if skill == "drive":
-            self.at = max(0, min(self.at + (1 if value else -1), len(self.good) - 1))
-        elif skill == "probe":
-            told = "good" if (self.rng.random() < _TELLS) == self.good[self.at] else "bad"
-        elif skill == "dig":
-            reward = -4 if self.taken[self.at] else 3 if self.good[self.at] else -5
-            self.taken[self.at] = True
-        else:
-            reward, self.has_ended = 0, True
-        self.gain(reward)
-        return told
-
-
-def survey_rule(sites: int, rng: random.Random) -> float:
-    world = Survey(sites, rng)
-    world.act("leave")
-    return world.earned
-
-
 # --- questions that tell nothing alone ---
 
 _NUMBERS, _LAMPS, _RIGHT = 64, 18, 0.9
@@ -129,34 +94,3 @@ __moduleResponse = guessed;"""
     writer.skill("guess", guess, over={"number": str(_NUMBERS)})
     writer.skill("leave", "state__.is_over = true;\n__moduleResponse = left;")
     return writer.files
-
-
-class Questions(World):
-    """The number as the documents describe it."""
-
-    def __init__(self, lamps: int, rng: random.Random):
-        super().__init__(rng, _DISCOUNT, ask=_NUMBERS - 1, see=lamps, guess=_NUMBERS, leave=1)
-        self.number = rng.randrange(_NUMBERS)
-
-    def act(self, skill: str, value: int = 0) -> str:
-        reward = -0.3 if skill in {"ask", "see"} else 0.0
-        if skill == "guess":
-            reward = 15.0 if value == self.number else -10.0
-        self.has_ended = skill in {"guess", "leave"}
-        self.gain(reward)
-        return "above" if (self.rng.random() < _RIGHT) == (self.number > value) else "below"
-
-
-def questions_rule(lamps: int, rng: random.Random) -> float:
-    """Asks for the half of the belief, and guesses at 0.8."""
-    world = Questions(lamps, rng)
-    odds = np.full(_NUMBERS, 1 / _NUMBERS)
-    while not world.is_over:
-        if odds.max() > 0.8:
-            world.act("guess", int(odds.argmax()))
-            continue
-        limit = int(abs(odds.cumsum() - 0.5)[:-1].argmin())
-        is_above = world.act("ask", limit) == "above"
-        odds *= np.where((np.arange(_NUMBERS) > limit) == is_above, _RIGHT, 1 - _RIGHT)
-        odds /= odds.sum()
-    return world.earned

@@ -1,10 +1,5 @@
-"""A lock of dials that opens when all of them are right, with a noisy probe of each: documents and a rule."""
+"""A lock of dials that opens when all of them are right, with a noisy probe of each."""
 
-import random
-
-import numpy as np
-
-from .world import World
 from .writing import Bundle, BundleWriter
 
 _DIGITS = 6
@@ -60,53 +55,3 @@ if (right == {count}) {{
 }}"""
     writer.skill("pull", pull)
     return writer.files
-
-
-class Lock(World):
-    """The lock as the documents describe it; a turn has the value `2 * dial + up`."""
-
-    def __init__(self, count: int, rng: random.Random):
-        super().__init__(rng, _DISCOUNT, turn=2 * count, probe=count, pull=1)
-        self.digits = [rng.randrange(_DIGITS) for _ in range(count)]
-        self.dials = [0] * count
-
-    def act(self, skill: str, value: int = 0) -> str:
-        if skill == "turn":
-            self.dials[value // 2] = (self.dials[value // 2] + (1 if value % 2 else -1)) % _DIGITS
-            self.gain(-0.2)
-        elif skill == "probe":
-            gap = self.digits[value] - self.dials[value]
-            told = 0 if gap > 0 else 1 if gap == 0 else 2
-            if self.rng.random() >= _TRUE:
-                told = (told + self.rng.randrange(1, 3)) % 3
-            self.gain(-0.3)
-            return str(told)
-        else:
-            self.has_ended = self.dials == self.digits
-            self.gain(60 if self.has_ended else -5)
-        return ""
-
-
-def lock_rule(count: int, rng: random.Random) -> float:
-    world = Lock(count, rng)
-    odds = np.full((count, _DIGITS), 1 / _DIGITS)
-    digits = np.arange(_DIGITS)
-    while not world.is_over:
-        for which in range(count):
-            while odds[which].max() < 0.95 and not world.is_over:
-                _turn(world, which, int(np.searchsorted(odds[which].cumsum(), 0.5)))
-                expected = np.sign(world.dials[which] - digits) + 1
-                told = int(world.act("probe", which))
-                odds[which] *= np.where(expected == told, _TRUE, (1 - _TRUE) / 2)
-                odds[which] /= odds[which].sum()
-            _turn(world, which, int(odds[which].argmax()))
-        if not world.is_over:
-            world.act("pull")
-        odds = (odds + 0.1) / (odds + 0.1).sum(1, keepdims=True)
-    return world.earned
-
-
-def _turn(world: Lock, which: int, digit: int):
-    up = (digit - world.dials[which]) % _DIGITS <= _DIGITS // 2
-    while world.dials[which] != digit and not world.is_over:
-        world.act("turn", 2 * which + up)

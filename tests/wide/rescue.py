@@ -1,9 +1,3 @@
-import random
-from collections import deque
-
-import numpy as np
-
-from .world import World
 from .writing import Bundle, BundleWriter
 
 _WIDE = 4  # rooms in a row; the dock is room 0
@@ -12,7 +6,6 @@ _BATTERY = 24
 _SEES, _MISTAKES = 0.9, 0.05
 _HEARS = (0.9, 0.5, 0.15)  # by the distance in rooms of the nearer person
 _DISCOUNT = 0.985
-_STEPS = ((0, -1), (1, 0), (0, 1), (-1, 0))
 
 
 def _environment(high: int) -> str:
@@ -103,110 +96,3 @@ __moduleResponse = is_here ? helped : nobody;"""
     writer.skill("assist", assist)
     writer.charger(_BATTERY)
     return writer.files
-
-
-class Rescue(World):
-    """The rooms as the documents describe them."""
-
-    def __init__(self, high: int, rng: random.Random):
-        super().__init__(rng, _DISCOUNT, go=4, force=4, listen=1, look=1, assist=1, charge=1)
-        self.high, self.rooms = high, _WIDE * high
-        self.people = [1 + rng.randrange(self.rooms - 1) for _ in range(2)]
-        self.is_helped = [False, False]
-        self.is_jammed = [rng.random() < _JAMS for _ in range(2 * self.rooms)]
-        self.at, self.battery = 0, _BATTERY
-
-    def through(self, room: int, direction: int) -> tuple[int, int] | None:
-        """The door from a room in a direction, and the room behind; None where there is a wall."""
-        x, y = room % _WIDE, room // _WIDE
-        to_x, to_y = x + _STEPS[direction][0], y + _STEPS[direction][1]
-        if not (0 <= to_x < _WIDE and 0 <= to_y < self.high):
-            return None
-        return 2 * (min(y, to_y) * _WIDE + min(x, to_x)) + (to_y != y), to_y * _WIDE + to_x
-
-    def act(self, skill: str, value: int = 0) -> str:
-        here = [i for i in (0, 1) if self.people[i] == self.at and not self.is_helped[i]]
-        told, reward = "", -0.2
-        if skill in {"go", "force"}:
-            way = self.through(self.at, value)
-            self.battery -= 1 if skill == "go" else 3
-            reward = -0.3 if skill == "go" else -1.0
-            if skill == "go" and way and not self.is_jammed[way[0]]:
-                self.at, told = way[1], "moved"
-            elif skill == "force" and way and self.rng.random() < _FORCED:
-                self.is_jammed[way[0]], told = False, "opened"
-        elif skill == "listen":
-            told = "voice" if self.rng.random() < self._heard() else "silence"
-        elif skill == "look":
-            told = "somebody" if self.rng.random() < (_SEES if here else _MISTAKES) else "nobody"
-        elif skill == "assist":
-            reward = 20.0 if here else -3.0
-            for i in here:
-                self.is_helped[i], told = True, "helped"
-        else:
-            reward = -0.5
-            self.battery = _BATTERY if self.at == 0 else self.battery
-        self.has_ended = all(self.is_helped) or self.battery < 0
-        self.gain(reward + (10 if all(self.is_helped) else 0) - (40 if self.battery < 0 else 0))
-        return told
-
-    def _heard(self) -> float:
-        odds = _MISTAKES
-        for i in (0, 1):
-            x, y = self.people[i] % _WIDE, self.people[i] // _WIDE
-            far = abs(x - self.at % _WIDE) + abs(y - self.at // _WIDE)
-            if not self.is_helped[i] and far < len(_HEARS):
-                odds = max(odds, _HEARS[far])
-        return odds
-
-
-def _way(world: Rescue, jams: np.ndarray, start: int, goal: int) -> tuple[int, int]:
-    costs, first = {start: 0.0}, {start: 0}
-    queue = deque([start])
-    while queue:
-        room = queue.popleft()
-        for direction in range(4):
-            way = world.through(room, direction)
-            if way is None:
-                continue
-            cost = costs[room] + 1 + jams[way[0]] * 6
-            if cost < costs.get(way[1], 1e9):
-                costs[way[1]] = cost
-                first[way[1]] = direction if room == start else first[room]
-                queue.append(way[1])
-    return first[goal], int(np.ceil(costs[goal]))
-
-
-def rescue_rule(high: int, rng: random.Random) -> float:
-    world = Rescue(high, rng)
-    jams = np.full(2 * world.rooms, _JAMS)
-    odds = np.full(world.rooms, 2 / (world.rooms - 1))  # that an unhelped person is there
-    odds[0] = 0
-    while not world.is_over:
-        room = world.at
-        if odds[room] > 0.6:
-            world.act("assist")
-            odds[room] = 0
-            continue
-        if odds[room] > 0.02:
-            seen = world.act("look") == "somebody"
-            yes, no = (_SEES, _MISTAKES) if seen else (1 - _SEES, 1 - _MISTAKES)
-            odds[room] = odds[room] * yes / (odds[room] * yes + (1 - odds[room]) * no)
-            continue
-        others = [goal for goal in range(world.rooms) if goal != room]
-        worth = {goal: odds[goal] / (1 + _way(world, jams, room, goal)[1]) for goal in others}
-        goal = max(worth, key=lambda place: worth[place])
-        there, home = _way(world, jams, room, goal)[1], _way(world, jams, goal, 0)[1]
-        if world.battery < there + home + 4 and not (room == 0 and world.battery == _BATTERY):
-            goal = 0
-        if room == 0 and goal == 0:
-            world.act("charge")
-            continue
-        direction = _way(world, jams, room, goal)[0]
-        way = world.through(room, direction)
-        assert way is not None
-        if jams[way[0]] > 0.9:
-            jams[way[0]] = 0.0 if world.act("force", direction) == "opened" else 1.0
-        else:
-            jams[way[0]] = 0.0 if world.act("go", direction) == "moved" else 1.0
-    return world.earned

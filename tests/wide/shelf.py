@@ -1,7 +1,5 @@
 """A box on one of three shelves that expires; moves and grips fail by thresholds of continuous draws."""
 
-import random
-
 from .writing import Bundle, BundleWriter
 
 _ODDS = (0.5, 0.3, 0.2)
@@ -53,26 +51,3 @@ if (holds) state__.has_it = true;
 __moduleResponse = holds ? got : missed;"""
     writer.skill("grab", grab)
     return writer.files
-
-
-def shelf_rule(steps: int, rng: random.Random) -> float:
-    box, at, odds = rng.choices(range(3), _ODDS)[0], 0, list(_ODDS)
-    earned, discount = 0.0, 1.0
-    for _ in range(steps):
-        likeliest = max(range(3), key=odds.__getitem__)
-        likelihoods, reward = [1.0, 1.0, 1.0], -1.0
-        if at != likeliest:
-            at = likeliest if rng.gauss(0, 1) <= 1 else at
-        elif odds[at] < 0.75:
-            seen = (rng.random() < _LOOK) == (at == box)
-            likelihoods = [_LOOK if (place == at) == seen else 1 - _LOOK for place in range(3)]
-            reward = -0.5
-        elif at == box and rng.random() < 0.8:
-            return earned + discount * 29
-        else:
-            likelihoods = [0.2 if place == at else 1.0 for place in range(3)]
-            reward = -4.0
-        odds = [odd * likelihood for odd, likelihood in zip(odds, likelihoods, strict=True)]
-        odds = [odd / sum(odds) for odd in odds]
-        earned, discount = earned + discount * reward, discount * 0.95
-    return earned

@@ -1,8 +1,7 @@
-"""Two towers of blocks that are taken down and built anew, with grips that slip: documents and a rule."""
+"""Two towers of blocks that are taken down and built anew, with grips that slip."""
 
 import random
 
-from .world import World
 from .writing import Bundle, BundleWriter
 
 _SLIPS = 0.1
@@ -18,10 +17,6 @@ def _start(count: int) -> list[int]:
     for place, block in enumerate(blocks[:-1]):
         on[block] = _TABLE if place == count // 2 - 1 else blocks[place + 1]
     return on
-
-
-def _goal(count: int, block: int) -> int:
-    return _TABLE if block in {count // 2 - 1, count - 1} else block + 1
 
 
 def towers(count: int = 10) -> Bundle:
@@ -78,43 +73,3 @@ if (state.held >= 0) {{
 }}"""
     writer.skill("lay", lay)
     return writer.files
-
-
-class Towers(World):
-    """The blocks as the documents describe them."""
-
-    def __init__(self, count: int, rng: random.Random):
-        super().__init__(rng, _DISCOUNT, pick=count, put=count, lay=1)
-        self.count, self.on, self.held = count, _start(count), -1
-
-    def is_free(self, block: int) -> bool:
-        return block != self.held and block not in self.on
-
-    def act(self, skill: str, value: int = 0) -> str:
-        slips = self.rng.random() < _SLIPS
-        if skill == "pick" and self.held < 0 and self.is_free(value) and not slips:
-            self.on[value], self.held = _HELD, value
-        elif skill != "pick" and self.held >= 0 and (skill == "lay" or self.is_free(value)):
-            self.on[self.held], self.held = _TABLE if skill == "lay" else value, -1
-        self.has_ended = all(below == _goal(self.count, block) for block, below in enumerate(self.on))
-        self.gain(-0.4 + (100 if self.has_ended else 0))
-        return ""
-
-
-def towers_rule(count: int, rng: random.Random) -> float:
-    world = Towers(count, rng)
-    is_laid = False  # all of them
-    while not world.is_over:
-        if world.held >= 0:
-            below = _goal(count, world.held)
-            is_next = is_laid and below != _TABLE
-            world.act(*(("put", below) if is_next else ("lay", 0)))
-            continue
-        high = [block for block in range(count) if world.on[block] != _TABLE and world.is_free(block)]
-        if not is_laid and high:
-            world.act("pick", high[0])
-            continue
-        is_laid = True
-        wrong = [block for block in range(count) if world.on[block] != _goal(count, block)]
-        world.act("pick", max(wrong))
-    return world.earned
