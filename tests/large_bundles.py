@@ -1,18 +1,4 @@
-"""Bundles of a size that nobody writes by hand: many state variables, or one long array.
-
-python tests/large_bundles.py: how long they take to check, to build and to update. The engine has to be
-compiled before, as set-up does it.
-"""
-
-import asyncio
-import sys
-import time
-from collections.abc import Mapping
-
-from models import built_text, engine_of
-from texts import encoded
-
-from aos_language.load import load_files
+"""Bundles of a size that nobody writes by hand: many state variables, or one long array."""
 
 _VALUES = {"int": "7", "bool": "true", "double": "0.5", "Level": "High", "string": '"a"', "Cup": "Cup{true}"}
 _TYPES = tuple(_VALUES)
@@ -60,30 +46,3 @@ def _bundle(environment: list[str], dynamic_model: list[str]) -> dict[str, str]:
         "large.ef": _ENVIRONMENT + "\n".join(environment) + "\n",
         "act.sd": _SKILL + "\n".join(dynamic_model) + "\n",
     }
-
-
-async def _measure(title: str, files: Mapping[str, str]) -> None:
-    checking_s = time.perf_counter()
-    load_files(encoded(files))
-    building_s = time.perf_counter()
-    built = await built_text(files)
-    built_s = time.perf_counter()
-    sys.stdout.write(
-        f"{title}: checked in {building_s - checking_s:.2f} s, built in {built_s - building_s:.2f} s"
-    )
-    async with engine_of(built) as engine:
-        for _ in range(3):
-            begun_s = time.perf_counter()
-            states = (await engine.update("act(at=1)", "one")).summary.states
-            sys.stdout.write(f", {states} states updated in {time.perf_counter() - begun_s:.3f} s")
-    sys.stdout.write("\n")
-
-
-async def _main() -> None:
-    await _measure("1,000 variables", many_variables(1_000))
-    await _measure("10,000 elements", long_array(10_000))
-    await _measure("10,000 elements, 10 drawn", long_array(10_000, drawn=10))
-
-
-if __name__ == "__main__":
-    asyncio.run(_main())
