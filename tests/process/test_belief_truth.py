@@ -63,35 +63,6 @@ async def test_the_error_of_a_belief_with_too_many_states_is_within_its_bound():
     assert update.summary.marginals[9].values["true"] == pytest.approx(posterior[9], abs=0.005)
 
 
-RARE = {
-    "rare.ef": """project: rare
-horizon: 5
-discount: 0.95
-
-state_variable: double level
-
-initial_belief:
-state.level = AOS.SampleUniform(0, 1);
-""",
-    "read.sd": """project: rare
-
-dynamic_model:
-state__.level = AOS.SampleUniform(0, 1);
-bool is_open = AOS.Bernoulli(0.02);
-__moduleResponse = is_open && AOS.Bernoulli(0.01 * state__.level) ? yes : no;
-""",
-}
-"""A response of probability 1 in 10,000, decided by the last two draws after a continuous one."""
-
-
-async def test_a_response_of_one_in_ten_thousand_is_weighted_not_waited_for():
-    async with engine_of_text(RARE) as engine:
-        update = await engine.update("read", "yes")
-    assert update.probability == pytest.approx(1e-4, rel=0.05)
-    assert update.summary.error_bound == 1
-    assert update.summary.effective_states > 1000
-
-
 CARDS = 28
 DEPLETING = {
     "cards.ef": row_of_bools("cards", CARDS, "0.5"),

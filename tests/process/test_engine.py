@@ -3,7 +3,7 @@ import signal
 from pathlib import Path
 
 import pytest
-from models import built_bundle, built_bundles, engine_of, engine_of_bundle, engine_of_text, simulated
+from models import built_bundle, built_bundles, engine_of, engine_of_bundle, engine_of_text
 from places import BUNDLES, DATA
 from processes import descendants, kill_engine, until_ended
 
@@ -156,16 +156,3 @@ async def test_model_code_that_crashes_is_named_by_its_document_line():
         with pytest.raises(ModelError, match=r"listen\.sd:5"):
             await engine.step_worlds(listening)
         assert (await engine.summary()).states == 2
-
-
-async def test_simulated_missions_of_the_finer_armadillo_sense_between_pick_and_serve():
-    async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
-        served = 0
-        for seed in range(1, 6):
-            run = await simulated(engine, 100_000, seed=seed, stop_below_value=0.0)
-            assert run.actions[0] == "navigate(destination=easy_table)"
-            for serving in (i for i, action in enumerate(run.actions) if action == "serve"):
-                picked = max(i for i, action in enumerate(run.actions[:serving]) if action == "pick")
-                assert any(action.startswith("observe") for action in run.actions[picked:serving])
-                served += 1
-        assert served > 0

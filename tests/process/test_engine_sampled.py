@@ -21,27 +21,6 @@ else __moduleResponse = low;
 }
 """A level that is never seen, only its sign under noise of the same size."""
 
-SWITCHES = {
-    "switches.ef": """project: switches
-horizon: 5
-discount: 0.95
-
-state_variable: int on
-
-initial_belief:
-for (int i = 0; i < 24; i++) if (AOS.Bernoulli(0.5)) state.on += 1;
-""",
-    "read.sd": """project: switches
-
-dynamic_model:
-__reward = -1;
-if (state__.on > 12) __moduleResponse = high;
-else __moduleResponse = low;
-""",
-}
-"""2^24 combinations of draws, of which only the number of ones is kept."""
-
-
 TEMPTING = GAUGE | {
     "leap.sd": """project: gauge
 
@@ -69,16 +48,6 @@ async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do():
     # Two standard normals with correlation 1/2 have the same sign with probability 2/3.
     assert second.probability == pytest.approx(2 / 3, abs=0.03)
     assert plan.predicted[0].probability == pytest.approx(2 / 3, abs=0.03)
-
-
-async def test_too_many_combinations_of_draws_are_sampled():
-    async with engine_of_text(SWITCHES) as engine:
-        summary = await engine.summary()
-        update = await engine.update("read", "high")
-    assert not summary.is_exact
-    assert update.probability == pytest.approx(7036530 / 2**24, abs=0.03)  # 13 heads or more of 24
-    assert sum(update.summary.marginals[0].values.values()) == pytest.approx(1)
-    assert min(int(value) for value in update.summary.marginals[0].values) >= 13
 
 
 async def test_rollouts_leave_out_what_cannot_be_run_whatever_the_policy_weighs():

@@ -58,34 +58,6 @@ JAMMING_COINS = {
 }
 """The same boxes, of which none is to be opened twice."""
 
-BERRIES = {
-    "berries.ef": """project: berries
-horizon: 20
-discount: 0.95
-
-state_variable: int at
-state_variable: int berries
-
-initial_belief:
-for (int i = 0; i < 24; i++) state.berries |= int(AOS.Bernoulli(0.5)) << i;
-""",
-    "go.sd": """project: berries
-parameter: int by
-
-available_parameters_code:
-__possibleParameters.push_back(std::make_tuple(-1));
-__possibleParameters.push_back(std::make_tuple(1));
-
-dynamic_model:
-state__.at = (state.at + by + 24) % 24;
-bool picked = state.berries >> state__.at & 1;
-state__.berries &= ~(1 << state__.at);
-__reward = picked;
-__moduleResponse = picked ? found : nothing;
-""",
-}
-"""A ring of 24 bushes, of which a number has a bit each: no table of few values tells of the berries."""
-
 SHELVES = {
     "shelves.ef": """project: shelves
 horizon: 40
@@ -148,10 +120,6 @@ async def test_values_are_learned_where_tables_of_few_variables_hold_them_and_wi
             plans.append(await engine.plan(simulations=500, seed=3, planner="pomcp"))
     assert "what states are worth is learned" in plans[0].why
     assert plans[0].actions == plans[1].actions
-
-
-async def test_rollouts_stay_where_a_policy_by_rollouts_earns_as_much():
-    assert "learned" not in await _why(BERRIES)
 
 
 async def test_what_missions_return_is_told_where_values_are_learned(tmp_path):

@@ -1,7 +1,6 @@
 import random
 
 import numpy as np
-import pytest
 from models import engine_of_text
 from numpy.typing import NDArray
 from processes import kill_engine
@@ -93,39 +92,3 @@ async def test_such_a_belief_is_the_same_after_a_kill():
                 assert (back.digest, back.effective_states) == (before.digest, before.effective_states)
             digests.append((await engine.update(*workshop.inspection())).summary.digest)
     assert digests[0] == digests[1] != ""
-
-
-async def test_a_hand_that_is_dealt_in_a_step_outlasts_its_states():
-    cards = 30
-    environment = f"""project: cards
-horizon: 5
-discount: 0.95
-
-state_variable: bool cards []
-code:
-state.cards.assign({cards}, false);
-
-state_variable: bool is_dealt
-
-initial_belief:
-state.is_dealt = false;
-"""
-    turn = f"""project: cards
-parameter: int number
-
-available_parameters_code:
-for (int i = 0; i < {cards}; i++) __possibleParameters.push_back(std::make_tuple(i));
-
-dynamic_model:
-if (!state.is_dealt) for (int i = 0; i < {cards}; i++) state__.cards[i] = AOS.Bernoulli(0.5);
-state__.is_dealt = true;
-__moduleResponse = state__.cards[number] ? yes : no;
-"""
-    dice = random.Random(4)
-    hand = [dice.random() < 0.5 for _ in range(cards)]
-    files = {"cards.ef": environment, "turn.sd": turn}
-    async with engine_of_text(files) as engine:
-        for card, is_on in enumerate(hand):
-            update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
-            assert not update.is_impossible, card
-            assert update.probability == pytest.approx(0.5, abs=0.1)

@@ -12,8 +12,8 @@ def verdicts() -> list[Verdict]:
     return [judged(mistake) for mistake in mistakes()]
 
 
-def test_there_are_fifteen_mistakes_in_each_of_nine_bundles(verdicts: list[Verdict]):
-    assert len(verdicts) == 135
+def test_there_are_fifteen_mistakes_in_each_of_eight_bundles(verdicts: list[Verdict]):
+    assert len(verdicts) == 120
 
 
 def test_every_mistake_is_told_with_its_code_in_the_right_file_and_line(verdicts: list[Verdict]):
