@@ -155,6 +155,7 @@ def test_of_two_living_missions_one_has_to_be_named(place: Place, mission: Path,
         anywhere = place.run("bundle", "list", folder=tmp_path)
         assert anywhere.returncode == 1
         assert str(mission) in anywhere.stderr
+        assert "AOS901" in anywhere.stderr
         assert "Name one with --run" in anywhere.stderr
         assert place.run("bundle", "list", "--run", str(mission), folder=tmp_path).returncode == 0
         assert other.run("bundle", "list").returncode == 0  # Its own folder has one.

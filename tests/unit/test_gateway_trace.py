@@ -12,6 +12,7 @@ from aos_protocol.messages import (
     Marginal,
     Outcome,
     PredictedObservation,
+    SearchMade,
 )
 
 
@@ -56,6 +57,15 @@ def test_a_choice_that_bounds_tell_apart_is_proven_whatever_the_errors_are():
     assert row_of(decided(1, actions=apart)).is_proven
     assert not row_of(decided(1, actions=(chosen, ActionValue("open", 31.7, 1, 19.0, 31.6, 38.0)))).is_proven
     assert not row_of(decided(1, actions=(chosen, ActionValue("open", 31.7, 1, 19.0)))).is_proven
+
+
+def test_an_action_that_cannot_be_chosen_is_no_second():
+    actions = tuple(
+        ActionValue(name, value, 9, 0.1) for name, value in {"look": 2, "go": 3, "wait": 1}.items()
+    )
+    barred = SearchMade("pomcp", (9,), barred={"go": "no adapter answers calls of /go"})
+    dropped = SearchMade("pomcp", (9,), is_dropped=True)
+    assert row_of(decided(1, actions=actions, searches=(barred, dropped))).second == "wait"
 
 
 def test_an_action_whose_value_nobody_knows_is_no_second():

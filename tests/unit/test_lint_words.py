@@ -119,10 +119,11 @@ def test_code_of_cpp_is_no_python_and_no_decimal(code):
     assert finding_texts(skill=skill_after(code)) == []
 
 
-def test_a_penalty_above_0_is_told():
-    assert finding_texts(skill=SKILL.replace("violate_penalty: -1", "violate_penalty: 2.5")) == [
-        "5 AOS147 walk earns 2.5 where this does not hold. A penalty is added to the reward: write -2.5"
-    ]
+def test_a_penalty_above_0_is_told_at_its_number():
+    (only,) = found(skill=SKILL.replace("violate_penalty: -1", "violate_penalty: 2.5"))
+    assert (only.span.line, only.span.column) == (6, 18)
+    assert str(only.message) == "walk earns 2.5 where its precondition does not hold"
+    assert only.hint == "A penalty is added to the reward: write -2.5"
 
 
 def test_a_skill_that_may_always_be_used_needs_no_penalty():

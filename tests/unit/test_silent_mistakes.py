@@ -198,6 +198,8 @@ def test_code_that_does_nothing_or_loses_a_fraction_is_told(code, told):
         ("Cell cell = state.cells[0]; if (steps > 1) { cell.x = 2; }", "`cell` is a copy: this changes"),
         ("auto c = state__.first; c.x = 1; state__.first = c; auto& d = state__.first; d.x = 2;", ""),
         ("auto after = state__; after.first.x = 2;", "`after` is a copy: this changes nothing"),
+        ("auto x = state__.first.x; x = 2;", "`x` is a copy: this changes nothing"),
+        ("for (auto cell : state__.cells) cell = Cell();", "`cell` is a copy: this changes nothing"),
         ("auto first = state__.first; state__.first.x = 2;", ""),
         ("int n = state.first.x; n = 2; auto at = state__.table.find(1); at->second = 3;", ""),
         ("state__.first = state__.first;", "`state__.first` is set to itself"),

@@ -67,7 +67,8 @@ def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
     What is named may also be a file of runs, as `aos export --format bundle` writes one, with one run.
     `runs` is the folder to look in; without one `runs` here comes first, then whatever goes on anywhere,
     which is told.
-    DeployError AOS801 if that is not one alone or the one named is none, BusError AOS605 if there is none.
+    DeployError AOS901 if that is not one alone, AOS801 if the one named is none; BusError AOS605 if there
+    is none.
     """
     if run is not None:
         named = RunDirectory(_opened(run) if run.is_file() else run, run)
@@ -127,7 +128,7 @@ def living_run(run: Path | None, runs: Path | None) -> RunDirectory:
 def living_system(name: str, runs: Path | None) -> RunDirectory:
     """The run that goes on of a robot or a deploy file.
 
-    `runs` is as in `chosen_run`. DeployError AOS801 if there are several, BusError AOS605 if there is none.
+    `runs` is as in `chosen_run`. DeployError AOS901 if there are several, BusError AOS605 if there is none.
     """
     here, elsewhere = ([run for run in each if _is_named(run, name)] for each in _living(runs))
     named = here or elsewhere
@@ -148,7 +149,8 @@ def _opened(file: Path) -> Path:
     """The directory of the run in a file, unpacked."""
     runs = opened_bundle(file)
     if len(runs) > 1:
-        raise DeployError(f"{file} has {len(runs)} runs", hint=f"Name one of {', '.join(map(str, runs))}")
+        hint = f"Name one of {', '.join(map(str, runs))}"
+        raise DeployError(f"{file} has {len(runs)} runs", code="AOS901", hint=hint)
     return runs[0]
 
 
@@ -161,4 +163,4 @@ def _living(runs: Path | None) -> tuple[list[RunDirectory], list[RunDirectory]]:
 
 def _several(runs: list[RunDirectory]) -> DeployError:
     names = ", ".join(str(run.path) for run in runs)
-    return DeployError(f"{len(runs)} systems run: {names}", hint="Name one with --run")
+    return DeployError(f"{len(runs)} systems run: {names}", code="AOS901", hint="Name one with --run")

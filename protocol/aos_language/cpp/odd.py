@@ -76,7 +76,7 @@ def _copied(loop: Node) -> Iterator[Odd]:
     is_bound = declared.type == "structured_binding_declarator"
     for name in declared.named_children if is_bound else [declared]:
         used = [part for part in below(field_of(loop, "body")) if text_of(part) == text_of(name)]
-        if used and all(_is_only_set(part, whole=is_bound) for part in used):
+        if used and all(_is_only_set(part, whole=True) for part in used):
             yield Odd(
                 used[0], f"`{text_of(name)}` is a copy: this changes nothing", "Declare it with `auto&`"
             )
@@ -95,7 +95,8 @@ def _copied_variable(node: Node) -> Iterator[Odd]:
         for part in below(node.parent)
         if part.type == "identifier" and text_of(part) == name and part.start_byte > declared.end_byte
     ]
-    if used and all(_is_only_set(part, whole=False) for part in used):
+    whole = field_text(node, "type") == "auto"  # As with the bit of a vector, which C++ binds.
+    if used and all(_is_only_set(part, whole=whole) for part in used):
         hint = f"Declare it with `auto& {name} = {value}`"
         yield Odd(used[0], f"`{name}` is a copy: this changes nothing", hint, local=name)
 

@@ -105,3 +105,10 @@ def normal_type(name: Text, findings: Findings) -> str:
         return name.text
     findings.warning("AOS127", f"the type {name.text}", name.span, f"It is read as {canonical}")
     return canonical
+
+
+def check_penalty(skill: str, penalty: float, span: Span, findings: Findings) -> None:
+    """Warns of a penalty above 0, at its number."""
+    if penalty > 0:
+        message = f"{skill} earns {penalty:g} where its precondition does not hold"
+        findings.warning("AOS147", message, span, f"A penalty is added to the reward: write -{penalty:g}")

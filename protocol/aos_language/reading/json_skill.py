@@ -1,6 +1,6 @@
 """The skill document in JSON (`PLP`, in the paper `GSDL`)."""
 
-from aos_language.reading.document import check_name, normal_type
+from aos_language.reading.document import check_name, check_penalty, normal_type
 from aos_language.reading.json_blocks import read_block
 from aos_language.reading.json_record import Record
 from aos_protocol.diagnostics import Span
@@ -9,7 +9,7 @@ from aos_protocol.documents import Assignment, Parameter, SkillModel
 
 def read_skill(record: Record, project: str, name: str, span: Span) -> SkillModel:
     """The skill's model; what cannot be read of it is reported and left out."""
-    precondition, rollout_policy, penalty = _preconditions(record)
+    precondition, rollout_policy, penalty = _preconditions(record, name)
     dynamic = record.record("DynamicModel", "DynamicModel", required=True)
     given = record.record("StateGivenObservationModel", "StateGivenObservationModel")
     for key in ("RequiredResources", "ModuleResponse", "LocalVariablesInitializationFromGlobalVariables"):
@@ -37,7 +37,9 @@ def _only_block(record: Record | None, key: str) -> tuple[Assignment, ...]:
     return block
 
 
-def _preconditions(record: Record) -> tuple[tuple[Assignment, ...], tuple[Assignment, ...], float]:
+def _preconditions(
+    record: Record, skill: str
+) -> tuple[tuple[Assignment, ...], tuple[Assignment, ...], float]:
     group = record.record("Preconditions", "Preconditions")
     if group is None:
         return (), (), 0.0
@@ -46,6 +48,7 @@ def _preconditions(record: Record) -> tuple[tuple[Assignment, ...], tuple[Assign
     penalty = group.number("ViolatingPreconditionPenalty")
     if penalty is None and group.has("ViolatingPreconditionPenalty"):
         penalty = -1.0  # That it cannot be read is told; it is not taken for none.
+    check_penalty(skill, penalty or 0.0, group.value_span("ViolatingPreconditionPenalty"), group.findings)
     group.finish()
     return precondition, rollout_policy, penalty or 0.0
 

@@ -1,6 +1,7 @@
 """The skill document (`.sd`)."""
 
 from aos_language.findings import Findings
+from aos_language.reading.document import check_penalty
 from aos_language.reading.sdl_declaration import read_declaration, read_number
 from aos_language.reading.sdl_sections import Sections
 from aos_protocol.diagnostics import Span
@@ -21,6 +22,8 @@ def read_skill(sections: Sections, project: str, name: str, span: Span, findings
         parameters.append(Parameter(name_text.text, kind, name_text.span, declaration.type_text.span))
     penalty = sections.last("violate_penalty")
     number = read_number(penalty, findings) if penalty is not None else 0.0
+    if penalty is not None and number:
+        check_penalty(name, number, penalty.value.span, findings)
     if not sections.all("dynamic_model"):
         findings.error("AOS105", f"the skill {name} lacks `dynamic_model:`", sections.span)
     return SkillModel(

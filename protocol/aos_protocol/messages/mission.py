@@ -328,6 +328,12 @@ class DecisionRecord(Message, frozen=True):
     build_digest: str = ""
     drift: tuple[ModelDrift, ...] = ()
 
+    @property
+    def deciding_search(self) -> SearchMade | None:
+        """The search that made the decision; None where none did."""
+        made = [each for each in self.searches if not each.is_dropped and not each.is_pondering]
+        return made[-1] if made else None
+
 
 class HistoryQuery(Message, frozen=True):
     """Asks for the decision records with a sequence number of at least `since`, at most `limit` of them.

@@ -1,5 +1,4 @@
-"""Preconditions that nothing keeps, or whose violation earns something: a skill runs also where its
-precondition does not hold."""
+"""Preconditions that nothing keeps: a skill runs also where its precondition does not hold."""
 
 import re
 from collections.abc import Iterable
@@ -17,18 +16,11 @@ _TRUE = re.compile(rf"\s*=\s*(?:true|1|{_MEETS}\s*\|\|.*)|\s*\|=.*", re.DOTALL)
 
 
 def check_precondition(model: SkillModel, findings: Findings) -> None:
-    """Remarks on a precondition whose violation costs nothing and changes nothing in the model.
-
-    Where it earns something, that is a warning.
-    """
+    """Remarks on a precondition whose violation costs nothing and changes nothing in the model."""
     if not model.precondition:
         return
     block = model.precondition[0]
     span = block.code.span if block.code is not None else block.span
-    if model.violation_penalty > 0:
-        message = f"{model.name} earns {model.violation_penalty:g} where this does not hold"
-        hint = f"A penalty is added to the reward: write -{model.violation_penalty:g}"
-        findings.warning("AOS147", message, span, hint)
     if _is_never_false(model.precondition):
         message = f"this precondition is never false: {_MEETS} starts as true"
         findings.warning("AOS147", message, span, f"Begin with `{_MEETS} = false;`")

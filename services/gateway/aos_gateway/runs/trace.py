@@ -197,8 +197,10 @@ def steps_of(mission: str, records: Iterable[DecisionRecord]) -> Trace:
 
 
 def _second(record: DecisionRecord) -> ActionValue | None:
+    """The best of the other actions that could have been chosen."""
+    barred = record.deciding_search.barred if record.deciding_search is not None else {}
     known = (value for value in record.actions if value.is_known(record.simulations))
-    others = (value for value in known if value.action != record.action)
+    others = (value for value in known if value.action != record.action and value.action not in barred)
     return max(others, key=lambda value: value.q, default=None)
 
 

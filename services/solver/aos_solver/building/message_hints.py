@@ -15,7 +15,7 @@ _HINTS = (
     (re.compile(r"base operand of `->` has non-pointer type `.*`"), "Write `.` in place of `->`"),
     (
         re.compile(r"return-statement with a value, in function returning `void`"),
-        "Set `__reward` or `__moduleResponse`, and write `return;`",
+        "Set `__meetPrecondition`, `__reward` or `__moduleResponse`, and write `return;`",
     ),
     (re.compile(r"invalid use of member function .*"), "It is called with brackets behind it: `(...)`"),
     (

@@ -15,7 +15,6 @@ from aos_solver.mission.models.past import replayed
 from aos_solver.study.aside import put_aside
 from aos_solver.study.replaying import ReplayedMission
 from aos_solver.study.supposing import believe_all, changed_files
-from aos_solver.study.valuing import deciding_search
 
 
 class OtherDocuments(NamedTuple):
@@ -43,7 +42,7 @@ async def _decided(
     engine: Engine,
     said: tuple[str, ...],
 ) -> WhatIf:
-    made = deciding_search(decision)
+    made = decision.deciding_search
     was_worth = await _values_before(replay, decision)
     was = replay.restriction_of(made) if made is not None else Restriction()
     within = _restricted(engine, query, was)

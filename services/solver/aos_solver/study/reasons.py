@@ -13,7 +13,7 @@ from aos_solver.study.aside import put_aside
 from aos_solver.study.flips import flips_of
 from aos_solver.study.replaying import ReplayedMission
 from aos_solver.study.traced_engines import TracedEngine, TracedEngines
-from aos_solver.study.valuing import Margin, Value, Valuing, best_of, deciding_search
+from aos_solver.study.valuing import Margin, Value, Valuing, best_of
 
 _SHOWN_RESPONSES = 3
 _TERM = 1e-12
@@ -95,7 +95,7 @@ class Reasons:
         return {value.action: Value.of(value) for value in self._decision.actions}
 
     def _other(self, instead: str, values: dict[str, Value]) -> str:
-        made = deciding_search(self._decision)
+        made = self._decision.deciding_search
         barred = made.barred if made else {}
         reasons = told_together(barred.values())
         if instead:

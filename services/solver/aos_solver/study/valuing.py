@@ -9,7 +9,7 @@ from typing import Self
 import msgspec
 from msgspec.structs import replace
 
-from aos_protocol.messages import ActionValue, DecisionRecord, SearchMade
+from aos_protocol.messages import ActionValue, DecisionRecord
 from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.search import Search
@@ -66,12 +66,6 @@ class Margin(msgspec.Struct, frozen=True):
         return cls(one.q - other.q, math.hypot(one.stderr, other.stderr))
 
 
-def deciding_search(decision: DecisionRecord) -> SearchMade | None:
-    """The search that made a decision; None where none did."""
-    made = [each for each in decision.searches if not each.is_dropped and not each.is_pondering]
-    return made[-1] if made else None
-
-
 class Valuing:
     """Values what the engine believes as the decision of a step was valued.
 
@@ -81,7 +75,7 @@ class Valuing:
     def __init__(self, replay: ReplayedMission, decision: DecisionRecord) -> None:
         self._search = replay.search_by(decision)
         self._step = decision.step
-        made = deciding_search(decision)
+        made = decision.deciding_search
         self.within = replay.restriction_of(made) if made is not None else Restriction()
         self.is_exact = decision.planner == "exact" and not self.within.without
         self.horizon = decision.horizon
@@ -98,7 +92,7 @@ class Valuing:
 
     async def begin(self, engine: Engine, decision: DecisionRecord) -> str:
         """Finds the planner for a decision that nothing was searched for; returns whose values count."""
-        if deciding_search(decision) is not None:
+        if decision.deciding_search is not None:
             return decision.planner
         plan = await self._search.run(engine, self._step, self.within)
         self.is_exact = plan.planner == "exact" and not self.within.without
