@@ -57,6 +57,23 @@ def test_a_bound_path_that_no_skill_calls_is_told_with_the_one_that_is_meant(tmp
     assert "/later" not in told, "a skill may come"
 
 
+def test_skills_that_nobody_serves_and_long_decisions_are_told_of_a_deploy_file(tmp_path):
+    bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
+    deploy = tmp_path / "yard.yaml"
+    for text, told in (
+        ("bind: {/pull: model}\n", ["4:1: warning[AOS807]: no adapter serves /push. "]),
+        (
+            "bind: {'*': model}\nsolver: {time_s: 200}\n",
+            ["5:10: warning[AOS801]: each decision takes 200 s. "],
+        ),
+        ("bind: {'*': model}\nsolver: {time_s: 0.2}\n", []),
+    ):
+        deploy.write_text(f"aos: 1\nrobot: yard\nbundles: [yard]\n{text}")
+        lines = aos("lint", deploy, "--no-compile").stdout.splitlines()
+        found = [line.split("yard.yaml:")[1] for line in lines if "warning[" in line]
+        assert [line[: len(start)] for line, start in zip(found, told, strict=True)] == told
+
+
 def test_mistakes_in_what_a_deploy_file_sets_for_its_documents_are_told_by_lint(tmp_path):
     bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
     deploy = tmp_path / "yard.yaml"

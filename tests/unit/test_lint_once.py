@@ -142,6 +142,23 @@ def test_names_to_import_that_are_no_list_are_one_error():
 
 
 @pytest.mark.parametrize(
+    ("written", "hint"),
+    [
+        ("state__.x = 1;", 'Write `[{"AssignmentCode": "..."}]`'),
+        (["state__.x = 1;"], 'Write `{"AssignmentCode": "..."}`'),
+        ({"AssignmentCode": "state__.x = 1;"}, 'Write `[{"AssignmentCode": "..."}]`'),
+    ],
+)
+def test_code_where_a_list_of_assignments_belongs_is_told_how_to_write_one(written, hint):
+    skill = {
+        "PlpMain": {"Project": "hall", "Name": "run", "Type": "PLP"},
+        "DynamicModel": {"NextStateAssignments": written},
+    }
+    (error,) = load_files(encoded({"hall.ef": ENVIRONMENT, "run.json": json.dumps(skill)})).diagnostics
+    assert (error.code, error.hint) == ("AOS106", hint)
+
+
+@pytest.mark.parametrize(
     ("change", "hint"),
     [
         ("ServicePath→ActionPath", "Did you mean `ServicePath`?"),

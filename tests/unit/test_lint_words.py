@@ -35,6 +35,7 @@ def test_a_comment_of_python_in_cpp_is_told_what_to_write(comment):
         (("environment", "__isGoalState", "isGoalState"), "isGoalState", "__isGoalState"),
         (("environment", "__isGoalState", "__isGoalStat"), "__isGoalStat", "__isGoalState"),
         (("environment", "int x 0", "bool x False"), "False", "false"),
+        (("skill", "__moduleResponse", "response"), "response", "__moduleResponse"),
         (("skill", "__moduleResponse", "_moduleResponse"), "_moduleResponse", "__moduleResponse"),
         (("skill", "__meetPrecondition", "meetPrecondition"), "meetPrecondition", "__meetPrecondition"),
     ],

@@ -47,6 +47,23 @@ async def test_a_push_reads_each_file_once(files: dict[str, bytes], catalogue: C
     assert read == Counter(dict.fromkeys(files, 1)) + Counter([name])  # As it was, and as it is now.
 
 
+async def test_a_finding_about_documents_that_stay_as_they_are_is_told_once(files, catalogue: Catalogue):
+    async def unused(_: Project) -> tuple[Diagnostic, ...]:
+        return (Diagnostic(Severity.WARNING, "AOS133", "no code uses it", Span("fetch.ef", 9)),)
+
+    intake = Intake(catalogue, SystemClock(), unused)
+    spoken = b"project: fetch\n\ndynamic_model:\n__moduleResponse = spoken;\n"
+    whole, _ = await intake.push({**files, "speak.sd": spoken}, "test")
+    assert [found.code for found in whole.diagnostics] == ["AOS114", "AOS133"]
+    sung = {"sing.sd": spoken.replace(b"spoken", b"sung")}
+    added, _ = await intake.push(sung, "test")
+    assert [(found.code, found.span.file) for found in added.diagnostics] == [("AOS114", "sing.sd")]
+    mistaken = {"sing.sd": spoken.replace(b"__module", b"state__.")}
+    wrong, _ = await intake.push(mistaken, "test")
+    again, _ = await intake.push(mistaken, "test")
+    assert wrong.diagnostics == again.diagnostics != ()
+
+
 async def test_a_project_that_is_too_large_is_refused_before_it_is_compiled(
     files: dict[str, bytes], catalogue: Catalogue, monkeypatch
 ):

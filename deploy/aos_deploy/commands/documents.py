@@ -1,6 +1,5 @@
 """`aos lint` and `aos inspect`: documents checked and looked at, without a running system."""
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
@@ -9,14 +8,13 @@ from typing import Annotated
 
 import typer
 
+from aos_deploy.bundles.bindings import binding_findings
 from aos_deploy.bundles.files import deployment_at, planned_of, project_at, refusal, with_mission
 from aos_deploy.bundles.sarif import sarif_log
-from aos_deploy.deployment.reading import Deployment
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments
-from aos_deploy.printing import count, from_here, print_diagnostics, print_json
-from aos_language.findings import Findings
+from aos_deploy.printing import count, print_diagnostics, print_json
 from aos_language.follow_ups import told_once
 from aos_language.load import load_files, with_excerpts
 from aos_language.outline import outline
@@ -25,7 +23,6 @@ from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DeployError
-from aos_protocol.spelling import nearest
 
 
 class Format(StrEnum):
@@ -133,7 +130,7 @@ def _of_deploy_file(path: Path, project: Project | None, draft: Project | None) 
     read = project or draft
     if deployment is None or read is None:
         return ()
-    found = _bound_in_vain(deployment, read)
+    found = binding_findings(deployment, read)
     if project is None:
         return found
     try:
@@ -141,21 +138,6 @@ def _of_deploy_file(path: Path, project: Project | None, draft: Project | None) 
     except DeployError as error:
         return (*found, *error.diagnostics)
     return found
-
-
-def _bound_in_vain(deployment: Deployment, project: Project) -> tuple[Diagnostic, ...]:
-    """The paths of a deploy file's `bind:` that no skill calls, and that are nearly those that one calls."""
-    called = {skill.mapping.activation.path for skill in project.skills}
-    bound = {bind for plan in deployment.adapters for bind in plan.bind}
-    text, name = deployment.path.read_bytes(), str(from_here(deployment.path))
-    findings = Findings()
-    for wrong in sorted(bound - called):
-        if close := nearest(wrong, called - bound):
-            lines = text.decode().splitlines()
-            place = next(n for n, line in enumerate(lines, 1) if re.search(rf"{re.escape(wrong)}\b", line))
-            span = Span(name, place, lines[place - 1].index(wrong) + 1)
-            findings.warning("AOS110", f"no skill calls {wrong}", span, f"Did you mean `{close}`?")
-    return with_excerpts(findings.sorted(), {name: text})
 
 
 def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) -> tuple[Diagnostic, ...]:

@@ -52,7 +52,7 @@ def check_responses(
         findings.unknown(name, given, message, span, otherwise, code="AOS116")
     if mapping.is_derived and not given and (place := sets_response(model)) is not None:
         message = f"the responses of {model.name} cannot be told from its code"
-        hint = f"Assign names to __moduleResponse, or write an abstraction mapping: {model.name}.am"
+        hint = f"Assign names without quotes to __moduleResponse, or write a mapping: {model.name}.am"
         findings.error("AOS114", message, place, hint)
     if is_whole and _check_any_response(model, mapping, read, findings):
         return

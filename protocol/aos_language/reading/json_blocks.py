@@ -10,6 +10,7 @@ from aos_language.reading.glued_else import with_else_apart
 from aos_language.reading.json_record import Record
 from aos_protocol.documents import Assignment, Iteration, TemporaryVariable
 
+_FORM = '{"AssignmentCode": "..."}'
 _ELSE = re.compile(r"(?:\s|//[^\n]*\n|/\*.*?\*/)*else\b", re.DOTALL)
 
 
@@ -20,7 +21,7 @@ def read_block(record: Record, key: str) -> tuple[Assignment, ...]:
     the one before.
     """
     blocks: list[Assignment] = []
-    for item in record.records(key, f'an assignment of "{key}"'):
+    for item in record.records(key, f'an assignment of "{key}"', _FORM):
         block = _assignment(item)
         block = with_else_apart(block, record.findings) if block is not None else None
         if block is not None and blocks and (whole := _gone_on(blocks[-1], block)) is not None:

@@ -236,13 +236,17 @@ class Record:
         value = self._read(key, required, "an object", lambda v: v if isinstance(v, JsonObject) else None)
         return None if value is None else Record(self.source, value, what, self.findings)
 
-    def records(self, key: str, what: str) -> Iterator[Record]:
-        """The objects of a list; anything else in it is reported and left out."""
+    def records(self, key: str, what: str, form: str = "") -> Iterator[Record]:
+        """The objects of a list; anything else is reported, with the `form` that is meant, and left out."""
+        value = self._value(key)
+        if form and value is not None and not isinstance(value, JsonArray):
+            self._wrong(f'"{key}"', "a list", value, f"Write `[{form}]`")
+            return
         for item in self._items(key):
             if isinstance(item, JsonObject):
                 yield Record(self.source, item, what, self.findings)
             else:
-                self._wrong(f'an item of "{key}"', "an object", item)
+                self._wrong(f'an item of "{key}"', "an object", item, f"Write `{form}`" if form else "")
 
     def texts(self, key: str) -> list[Text]:
         """The strings of a list, without the blanks around them; those of a single text, with an error."""
@@ -298,9 +302,10 @@ class Record:
             self._wrong(f'"{key}"', expected, value)
         return accepted
 
-    def _wrong(self, what: str, expected: str, value: JsonValue) -> None:
+    def _wrong(self, what: str, expected: str, value: JsonValue, hint: str = "") -> None:
         message = f"{what} must be {expected}, not {describe(value)}"
-        hint = _IN_PLACE_OF_TEXT.get(expected, "") if isinstance(value, JsonString) else ""
+        if not hint and isinstance(value, JsonString):
+            hint = _IN_PLACE_OF_TEXT.get(expected, "")
         self.findings.error("AOS106", message, self.source.span(value.start), hint)
 
 

@@ -2,6 +2,8 @@
 
 from collections.abc import Awaitable, Callable, Mapping
 
+import msgspec
+
 from aos_language.findings import Findings
 from aos_language.load import LoadedBundle, load_files, with_excerpts
 from aos_language.merge import changed_skills, merge, pushed_project
@@ -28,6 +30,8 @@ class Intake:
         self._clock = clock
         self._check_model = check_model
         self.revisions: dict[str, ProjectRevision] = {}
+        self._told: dict[str, tuple[Diagnostic, ...]] = {}
+        """The findings that were told about each project's revision."""
 
     def recall(self) -> list[BundleReport]:
         """Takes in what the catalogue holds; a report for each project that does not pass today's checks."""
@@ -44,7 +48,19 @@ class Intake:
 
     async def push(self, files: Mapping[str, bytes], source: str) -> tuple[BundleReport, bool]:
         """Takes files in; returns what became of them, and whether there is a new revision. AosError if it
-        cannot be stored."""
+        cannot be stored.
+
+        A warning or a remark that a push of the project has told already is not told again.
+        """
+        report, is_new = await self._taken(files, source)
+        told = self._told.get(report.project, ())
+        if is_new:
+            self._told[report.project] = report.diagnostics
+        news = (each for each in report.diagnostics if each.severity is Severity.ERROR or each not in told)
+        return msgspec.structs.replace(report, diagnostics=tuple(news)), is_new
+
+    async def _taken(self, files: Mapping[str, bytes], source: str) -> tuple[BundleReport, bool]:
+        """Takes files in, as `push`; the report has all findings."""
         known: KnownFiles = {}
         project = pushed_project(files, known)
         current = self._catalogue.current(project)

@@ -16,6 +16,7 @@ from aos_protocol.spelling import nearest, quoted
 
 _LONE_NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*")
 _PLAIN_SPECIAL_NAMES = {name.strip("_").lower(): name for name in SPECIAL_NAMES}
+_PLAIN_SPECIAL_NAMES |= dict.fromkeys(("response", "observation"), "__moduleResponse")
 LITERAL_NAMES = frozenset({"false", "nullptr", "true"})
 _TRUTHS = frozenset({"__isFailureState", "__isGoalState", "__meetPrecondition", "__stopEvaluatingState"})
 _TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')

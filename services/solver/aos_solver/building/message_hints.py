@@ -17,6 +17,7 @@ _HINTS = (
         re.compile(r"return-statement with a value, in function returning `void`"),
         "Set `__meetPrecondition`, `__reward` or `__moduleResponse`, and write `return;`",
     ),
+    (re.compile(r"`format` is not a member of `std`"), "Write `std::to_string`, and join texts with `+`"),
     (re.compile(r"invalid use of member function .*"), "It is called with brackets behind it: `(...)`"),
     (
         re.compile(r"expected primary-expression before `\.` token"),
