@@ -58,6 +58,9 @@ async def test_a_finding_about_documents_that_stay_as_they_are_is_told_once(file
     sung = {"sing.sd": spoken.replace(b"spoken", b"sung")}
     added, _ = await intake.push(sung, "test")
     assert [(found.code, found.span.file) for found in added.diagnostics] == [("AOS114", "sing.sd")]
+    louder = {"sing.sd": sung["sing.sd"] + b"__reward = -1;\n"}
+    changed, _ = await intake.push(louder, "test")
+    assert [(found.code, found.span.file) for found in changed.diagnostics] == [("AOS114", "sing.sd")]
     mistaken = {"sing.sd": spoken.replace(b"__module", b"state__.")}
     wrong, _ = await intake.push(mistaken, "test")
     again, _ = await intake.push(mistaken, "test")

@@ -15,7 +15,7 @@ from aos_protocol.documents import Project
 from aos_protocol.errors import BusError, DocumentError
 from aos_protocol.messages import BundleReport, ProjectRevision
 from aos_protocol.spelling import did_you_mean, quoted
-from aos_registry.catalogue import Catalogue
+from aos_registry.catalogue import Catalogue, Revision
 from aos_runtime.clock import Clock
 
 ModelCheckPort = Callable[[Project], Awaitable[tuple[Diagnostic, ...]]]
@@ -50,20 +50,25 @@ class Intake:
         """Takes files in; returns what became of them, and whether there is a new revision. AosError if it
         cannot be stored.
 
-        A warning or a remark that a push of the project has told already is not told again.
+        A warning or a remark on a file that stays as it was is told once.
         """
-        report, is_new = await self._taken(files, source)
-        told = self._told.get(report.project, ())
-        if is_new:
-            self._told[report.project] = report.diagnostics
-        news = (each for each in report.diagnostics if each.severity is Severity.ERROR or each not in told)
-        return msgspec.structs.replace(report, diagnostics=tuple(news)), is_new
-
-    async def _taken(self, files: Mapping[str, bytes], source: str) -> tuple[BundleReport, bool]:
-        """Takes files in, as `push`; the report has all findings."""
         known: KnownFiles = {}
         project = pushed_project(files, known)
         current = self._catalogue.current(project)
+        report, is_new = await self._taken(files, source, known, current)
+        before = current.files.items() if current else ()
+        same = {name for name, data in before if files.get(name, data) == data}
+        old = {each for each in self._told.get(report.project, ()) if each.span.file in same}
+        if is_new:
+            self._told[report.project] = report.diagnostics
+        news = tuple(each for each in report.diagnostics if each.is_error or each not in old)
+        return msgspec.structs.replace(report, diagnostics=news), is_new
+
+    async def _taken(
+        self, files: Mapping[str, bytes], source: str, known: KnownFiles, current: Revision | None
+    ) -> tuple[BundleReport, bool]:
+        """Takes files in, as `push`, after the `current` revision; the report has all findings."""
+        project = pushed_project(files, known)
         merged = merge(current.files if current else {}, files, known)
         loaded = load_files(merged.files, name=source or "bundle", known=known)
         number = current.number if current else 0
