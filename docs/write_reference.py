@@ -14,7 +14,7 @@ from pathlib import Path
 from limits_table import limits_table
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
-from aos_gateway.api.table import OPERATIONS
+from aos_gateway.api.app import OPERATIONS
 from aos_language.reading.sdl_text import Word
 from aos_language.reading.sdl_words import GRAMMARS
 from aos_protocol import access, errors, keys

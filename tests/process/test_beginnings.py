@@ -9,12 +9,11 @@ from aos_protocol.errors import AosError, PlanningError
 from aos_protocol.messages import StartMission
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.beginning import begin_with
 from aos_solver.mission.conditions import built_with_conditions
 from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.records.logbook import Logbooks
 from aos_solver.mission.rules.terms import Terms
-from aos_solver.mission.succession import Succession
+from aos_solver.mission.succession import Succession, begin_with
 
 WALK = {
     "walk.ef": """\

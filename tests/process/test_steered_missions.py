@@ -11,7 +11,7 @@ from test_taking_up import rows_of
 
 from aos_deploy.commands.steering import _held
 from aos_deploy.deployment.constraints import constrained, constraint_of_option
-from aos_deploy.history_check.steering_rules import SteeringRules
+from aos_deploy.history_check.journal_rules import SteeringRules
 from aos_deploy.views.lines import decision_line
 from aos_protocol.errors import SteeringError
 from aos_protocol.messages import ActionRefused, Activate, MissionBegun, MissionState, Outcome, Steer

@@ -12,8 +12,8 @@ from ssh_host import stand_in
 from supervised_system import System, command, small
 
 from aos_deploy.processes import silences as silences_module
+from aos_deploy.processes.consequence import STARTS
 from aos_deploy.processes.program import Program
-from aos_deploy.processes.restarts import STARTS
 from aos_deploy.processes.silences import FROZEN_S
 from aos_protocol.errors import AosError, DeployError, DocumentError
 

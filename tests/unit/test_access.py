@@ -19,8 +19,8 @@ from aos_protocol.access import (
 from aos_protocol.errors import BusError
 from aos_protocol.keys import Keys, Lack, Serving
 from aos_runtime.bus.access_check import Access
-from aos_runtime.router.access import access_control
 from aos_runtime.router.log import RefusalLog
+from aos_runtime.router.routing import access_control
 
 KEYS = Keys("r")
 ARM = Party(name="arm", role=ADAPTER, paths=("/pick", "gripper/open"))

@@ -1,11 +1,10 @@
 import numpy as np
 import pytest
 
-from aos_lab.calibration.calibrate import Calibration
+from aos_lab.calibration.calibrate import Calibration, patch_of, proposed_numbers
 from aos_lab.calibration.draws import Draw
 from aos_lab.calibration.estimation import DrawEstimate, estimate
 from aos_lab.calibration.lattice import Lattice
-from aos_lab.calibration.patch import patch_of, proposed_numbers
 from aos_lab.commands.calibrate import print_calibration
 from aos_protocol.diagnostics import Span
 

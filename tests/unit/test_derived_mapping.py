@@ -11,7 +11,7 @@ from aos_editor.symbols import read_bundle
 from aos_language.convert import Dialect, convert, without_origins
 from aos_language.load import LoadedBundle, load_files
 from aos_language.outline import outline
-from aos_middleware.activations.no_response import no_response
+from aos_middleware.activations.activation import no_response
 from aos_middleware.emission.emit import emit_mapping
 from aos_middleware.workers.worker import LoadedMapping
 from aos_protocol.documents import AbstractionMapping, Project

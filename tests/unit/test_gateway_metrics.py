@@ -3,8 +3,8 @@ from typing import Any
 from decision_records import decision_record
 from msgspec.structs import replace
 
+from aos_gateway.metrics.counting import Families
 from aos_gateway.metrics.exposition import Counter, Histogram, exposition
-from aos_gateway.metrics.families import Families
 from aos_protocol.messages import ActivationId, DecisionRecord, Fault, ModelDrift, Outcome, SearchMade
 
 

@@ -13,7 +13,7 @@ from aos_language.findings import MAX_OF_A_SEVERITY, Findings
 from aos_language.load import LoadedBundle, load_files
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 from aos_protocol.errors import DeployError, DocumentError, StorageError
-from aos_registry.watch import watch_for_bundles
+from aos_registry.drops import watch_for_bundles
 from aos_runtime.processes.lifecycle import root_cause
 
 

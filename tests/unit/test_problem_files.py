@@ -7,8 +7,7 @@ from places import PROBLEMS, ROOT
 
 from aos_lab.formats import is_problem_file
 from aos_lab.formats.problem_files import read_problem
-from aos_lab.formats.problem_writers import write_problem
-from aos_lab.formats.sensing_by_state import with_sensing_by_state
+from aos_lab.formats.problem_writers import with_sensing_by_state, write_problem
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import DocumentError, ModelError, PlanningError
 from aos_solver.offline.explicit_model import ExplicitModel, Floats, Ragged

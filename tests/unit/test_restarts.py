@@ -1,4 +1,4 @@
-from aos_deploy.processes.restarts import STARTS, STARTS_OF_ADAPTER, WITHIN_S, Restarts
+from aos_deploy.processes.consequence import STARTS, STARTS_OF_ADAPTER, WITHIN_S, Restarts
 
 
 def test_starts_wait_longer_and_longer_until_a_minute_is_over():

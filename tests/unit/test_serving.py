@@ -9,7 +9,7 @@ from commands import aos
 from places import BUNDLES, DEPLOY, ROOT
 
 from aos_deploy.deployment.reading import Deployment, read_deploy_file
-from aos_deploy.missions.serving import serving_program
+from aos_deploy.missions.serve_run import serving_program
 from aos_language.load import load_bundle
 from aos_protocol.errors import DeployError
 from aos_skills.ros.adapter import Way, way_to

@@ -8,7 +8,7 @@ from places import DEPLOY
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.armadillo import KIND
 from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile, FaultModel
-from aos_skills.pybullet.worlds.armadillo.pick import STRETCHED, _perceived, can_in_reach
+from aos_skills.pybullet.worlds.armadillo.skills import STRETCHED, _perceived, can_in_reach
 from aos_skills.pybullet.worlds.armadillo.world import Armadillo
 
 pytestmark = pytest.mark.physics

@@ -8,20 +8,51 @@
 
 import base64
 import json
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+import msgspec
 from mcap.writer import Writer
 
 from aos_deploy.export.kept_missions import KeptMission, kept_missions
-from aos_deploy.export.pictures import Picture, pictures_of
-from aos_deploy.export.plain_schema import plain_schema, without_nulls
 from aos_deploy.export.plotted import BELIEF, VALUES, belief_of, merged_schema, values_of
 from aos_protocol import __version__
 from aos_protocol.messages import DecisionRecord
 from aos_protocol.mission_rows import MESSAGES
 from aos_runtime.disk.journal import JournalRow
+
+_NAME = re.compile(r"step-(\d+)\.png")
+
+
+class Picture(NamedTuple):
+    """A picture after a step."""
+
+    path: Path
+    step: int
+    stamp_ns: int
+
+
+def pictures_of(run: Path, missions: Iterable[KeptMission]) -> list[Picture]:
+    """The pictures of a run in the order of their times.
+
+    Its time is that of the outcome of its step. In a system that stays a picture is of the mission that had
+    this step when it was written: a later mission has written over those of earlier ones.
+    """
+    ends: dict[int, list[int]] = {}
+    for mission in missions:
+        for record in mission.decisions():
+            if record.outcome is not None:
+                ends.setdefault(record.step, []).append(record.outcome.ended_ns or record.stamp_ns)
+    found = []
+    for path in (run / "pictures").glob("step-*.png"):
+        if name := _NAME.fullmatch(path.name):
+            step, written_ns = int(name[1]), path.stat().st_mtime_ns
+            stamp_ns = min(ends.get(step, [written_ns]), key=lambda end_ns: abs(end_ns - written_ns))
+            found.append(Picture(path, step, stamp_ns))
+    return sorted(found, key=lambda picture: (picture.stamp_ns, picture.step))
+
 
 PICTURE = "/aos/picture"
 
@@ -142,3 +173,49 @@ def _attached(run: Path) -> Iterator[Path]:
     for path in (run / "run.json", run / "summary.json", *sorted((run / "logs").glob("*.log"))):
         if path.is_file() and path.stat().st_size <= _ATTACHED_BYTES:
             yield path
+
+
+def plain_schema(kind: type[Any]) -> dict[str, Any]:
+    """The schema of a message, without references and without alternatives.
+
+    What may be null is not required: `without_nulls` leaves it out. What may be of several types has none.
+    """
+    whole = msgspec.json.schema(kind)
+    definitions = whole.get("$defs", {})
+    return {"title": kind.__name__, **_plain(whole, definitions)}
+
+
+def without_nulls(value: Any) -> Any:
+    """JSON data whose objects lack the fields that are null."""
+    if isinstance(value, dict):
+        return {key: without_nulls(item) for key, item in value.items() if item is not None}
+    if isinstance(value, list):
+        return [without_nulls(item) for item in value]
+    return value
+
+
+def _plain(schema: dict[str, Any], definitions: dict[str, Any]) -> dict[str, Any]:
+    if "$ref" in schema:
+        return _plain(definitions[schema["$ref"].rpartition("/")[2]], definitions)
+    if "anyOf" in schema:
+        options = [option for option in schema["anyOf"] if option.get("type") != "null"]
+        return _plain(options[0], definitions) if len(options) == 1 else {}
+    kind = schema.get("type")
+    if isinstance(kind, list):
+        kinds = [each for each in kind if each != "null"]
+        return {"type": kinds[0]} if len(kinds) == 1 else {}
+    if kind == "object" and "properties" in schema:
+        required = [
+            name for name in schema.get("required", ()) if not _may_be_null(schema["properties"][name])
+        ]
+        properties = {name: _plain(each, definitions) for name, each in schema["properties"].items()}
+        return {"type": "object", "properties": properties, **({"required": required} if required else {})}
+    if kind == "array" and isinstance(schema.get("items"), dict):
+        return {"type": "array", "items": _plain(schema["items"], definitions)}
+    if "enum" in schema:
+        return {"type": "string"}
+    return {"type": kind} if kind else {}
+
+
+def _may_be_null(schema: dict[str, Any]) -> bool:
+    return schema.get("type") == "null" or any(_may_be_null(option) for option in schema.get("anyOf", ()))

@@ -27,7 +27,7 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
 
     `settings` are what it is told beyond robot, endpoint and run directory. It is ready when its liveliness
     token is seen; `start_s` bounds that, `stop_s` the time between SIGTERM and SIGKILL. Where it
-    `is_restarted`, it is started again when it ends by itself after it was ready, as `restarts.py` says.
+    `is_restarted`, it is started again when it ends by itself after it was ready, as `Restarts` says.
     With a `command` it is a program of the user's own: it gets its settings in the environment, is ready
     when it serves one of the `paths` that are bound to it, and may be started again before that, too. The
     word `python` stands for the Python that this runs in. With a `host` it runs there, in a `folder` of

@@ -5,8 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from aos_lab.formats.pomdp_rewards import RewardRules
-from aos_lab.formats.pomdp_statements import Statement, statements_of
-from aos_lab.formats.pomdp_tables import Distribution, PomdpTables, explicit_model
+from aos_lab.formats.pomdp_statements import (
+    Distribution,
+    PomdpTables,
+    Statement,
+    explicit_model,
+    statements_of,
+)
 from aos_lab.formats.problem_text import ProblemFindings, Word, advice_on_number
 from aos_protocol.errors import IntractableError
 from aos_protocol.spelling import did_you_mean

@@ -14,9 +14,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from aos_gateway.api.access import COOKIE, Access
 from aos_gateway.api.openapi import openapi_document
 from aos_gateway.api.page import page_routes
-from aos_gateway.api.table import OPERATIONS
 from aos_gateway.metrics.exposition import EXPOSITION
-from aos_gateway.operations import JSON, Content, Operation, response_of, route_of
+from aos_gateway.operations import EVENT_STREAM, JSON, Content, Operation, operation, response_of, route_of
+from aos_gateway.resources import documents, reading, run_files, study, writing
+from aos_gateway.resources.state_picture import state_picture
 from aos_gateway.shared import Gateway
 from aos_protocol.errors import AosError, BusError, GatewayError
 
@@ -127,3 +128,39 @@ def _methods_at(request: Request) -> list[str]:
 async def _defect(request: Request, error: Exception) -> Response:
     text = f"the gateway failed on {request.url.path}: {type(error).__name__}: {error}"
     return response_of(BusError(text, code="AOS606", hint="The gateway's terminal has the rest"))
+
+
+_ARCHIVE = "an archive of documents, or one document"
+
+OPERATIONS: tuple[Operation, ...] = (
+    operation("GET", "/v1", reading.index),
+    operation("GET", "/v1/projects", writing.projects),
+    operation("POST", "/v1/projects", writing.upload, upload=_ARCHIVE, status=201),
+    operation("POST", "/v1/checks", writing.check, upload=_ARCHIVE),
+    operation("GET", "/v1/runs", reading.runs),
+    operation("POST", "/v1/runs", writing.start, status=201),
+    operation("GET", "/v1/runs/{run}", reading.run),
+    operation("GET", "/v1/runs/{run}/services", run_files.services),
+    operation("GET", "/v1/runs/{run}/logs/{service}", run_files.log, media="text/plain"),
+    operation("GET", "/v1/runs/{run}/bundles", documents.bundles),
+    operation("POST", "/v1/runs/{run}/bundles", writing.push, upload=_ARCHIVE),
+    operation("POST", "/v1/runs/{run}/stop", writing.end),
+    operation("POST", "/v1/runs/{run}/missions", writing.start_next, status=201),
+    operation("GET", "/v1/missions", reading.missions),
+    operation("GET", "/v1/missions/{mission}", reading.mission),
+    operation("POST", "/v1/missions/{mission}/stop", writing.stop),
+    operation("POST", "/v1/missions/{mission}/steering", writing.steer),
+    operation("GET", "/v1/missions/{mission}/trace", reading.trace),
+    operation("GET", "/v1/missions/{mission}/decisions", reading.decisions),
+    operation("GET", "/v1/missions/{mission}/decisions/{step}", reading.decision),
+    operation("GET", "/v1/missions/{mission}/beliefs", reading.beliefs),
+    operation("GET", "/v1/missions/{mission}/activations", reading.activations),
+    operation("GET", "/v1/missions/{mission}/world", run_files.pictures),
+    operation("GET", "/v1/missions/{mission}/world/{step}", run_files.picture, media="image/png"),
+    operation("GET", "/v1/missions/{mission}/documents", documents.documents),
+    operation("GET", "/v1/missions/{mission}/decisions/{step}/why", study.why),
+    operation("GET", "/v1/missions/{mission}/decisions/{step}/tree", study.tree),
+    operation("GET", "/v1/missions/{mission}/decisions/{step}/picture", state_picture, media="image/svg+xml"),
+    operation("POST", "/v1/missions/{mission}/decisions/{step}/whatif", study.what_if),
+    operation("GET", "/v1/events", reading.events, media=EVENT_STREAM, gives=None),
+)

@@ -7,14 +7,14 @@ next.
 
 import asyncio
 import logging
+import math
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import msgspec
 from msgspec.structs import replace
 
 from aos_middleware.activations.heard_topics import QUEUE_SIZE, HeardTopics
-from aos_middleware.activations.no_response import no_response
-from aos_middleware.activations.observed_numbers import numbers_among, observed_numbers
 from aos_middleware.activations.skill_call import Call
 from aos_middleware.activations.surroundings import Surroundings
 from aos_middleware.mappings.low_level import assigned_variables
@@ -23,10 +23,11 @@ from aos_middleware.robot.stopping import Stop
 from aos_middleware.workers.evaluator import Evaluator, MappingFault
 from aos_middleware.workers.frames import Observed
 from aos_middleware.workers.values import kept_texts
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.documents import AbstractionMapping
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import Activate, Fault, Outcome, SkillResult, TopicMessage
-from aos_protocol.spelling import shortened
+from aos_protocol.spelling import did_you_mean, quoted, shortened
 from aos_runtime.bus.subscription import merged
 
 _LONGEST_RESPONSE = 1000
@@ -236,3 +237,73 @@ class _Activation:
             code="AOS504",
             hint="The skill has ended; let the robot sense what became of it",
         )
+
+
+def observed_numbers(names: Iterable[str], local_variables: Mapping[str, str]) -> dict[str, Any]:
+    """Returns by name a number, or a list of numbers with None for those that are missing.
+
+    A local variable that is none of these, as text in `local_variables`, was not observed.
+    """
+    return numbers_among({name: _decoded(local_variables.get(name, "null")) for name in names})
+
+
+def numbers_among(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns what counts as observed of what a program of the robot's may give as numbers."""
+    return {name: value for name, value in values.items() if _is_number(value) or _is_list(value)}
+
+
+def _decoded(text: str) -> Any:
+    """Plain data from JSON; other objects are told by their `repr`, and are no numbers."""
+    try:
+        return msgspec.json.decode(text)
+    except UNREADABLE:
+        return None
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        return isinstance(value, bool | int | float) and math.isfinite(value)
+    except OverflowError:  # No double is so large.
+        return False
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, list) and all(item is None or _is_number(item) for item in value)
+
+
+_FIELD = "response"
+"""A derived mapping takes this field from a result."""
+
+
+def no_response(
+    mapping: AbstractionMapping, result: Mapping[str, Any], local_variables: dict[str, str]
+) -> MappingFault:
+    """No rule holds, or the variable whose text is the response has no value; `result` are its fields."""
+    span = mapping.rules[0].span if mapping.rules else mapping.span
+    if mapping.is_derived:
+        message, hint = _of_derived(mapping, result)
+    elif mapping.response_variable:
+        message = f"the response is the text of {mapping.response_variable}, which has no value"
+        hint = "See that its code assigns it, whatever the skill's result is"
+    else:
+        values = ", ".join(f"{name}={shortened(text, 200)}" for name, text in local_variables.items())
+        message = f"no response rule of {mapping.name} holds ({values or 'no local variables'})"
+        hint = "End the rules with one whose condition is True"
+    return MappingFault(message, span, code="AOS402", hint=hint, local_variables=local_variables)
+
+
+def _of_derived(mapping: AbstractionMapping, result: Mapping[str, Any]) -> tuple[str, str]:
+    known = [rule.response for rule in mapping.rules]
+    response = result.get(_FIELD)
+    if response is None:
+        has = f"it has {quoted(result)}" if result else "it is empty"
+        has = "it is None" if _FIELD in result else has
+        message = f"the result of {mapping.activation.path} has no `{_FIELD}`: {has}"
+        one_of = f", one of {quoted(known)}" if known else ""
+        hint = f"Have the adapter answer with it{one_of}, or write the abstraction mapping {mapping.name}.am"
+        return message, hint
+    path, name = mapping.activation.path, mapping.name
+    message = (
+        f"{path} answered with the response {shortened(repr(response), 200)}, which {name} does not know"
+    )
+    return message, did_you_mean(str(response), known) or f"The skill document knows {quoted(known)}"

@@ -6,7 +6,6 @@ from collections.abc import Awaitable, Callable, Iterable
 from typing import Any, NamedTuple
 
 from aos_runtime.closing import Closing
-from aos_skills.ros.unended import UnendedGoals
 
 DISCOVERY_S = 5.0
 """A server or publisher may take this long to appear."""
@@ -155,3 +154,38 @@ def named_skills(services: Iterable[str]) -> list[str]:
     """Picks from the names of services those that may be skills, actions by their own names."""
     whole = {name.removesuffix(_GOAL) for name in services if "/_action/" not in name or name.endswith(_GOAL)}
     return sorted(name for name in whole if not name.endswith(_OF_EVERY_NODE))
+
+
+class UnendedGoals:
+    """Waits in the background for the end of each such goal. Belongs to the event loop that runs."""
+
+    def __init__(self) -> None:
+        self._waiting: dict[asyncio.Future[None], str] = {}
+
+    def add(self, action: str, *ends: Awaitable[object]) -> None:
+        """Holds a goal of this action as moving until one of these has come, as an answer or as an error."""
+        task = asyncio.ensure_future(_first(ends))
+        self._waiting[task] = action
+        task.add_done_callback(self._waiting.pop)
+
+    @property
+    def actions(self) -> list[str]:
+        """The names of the actions whose goals may still move the robot."""
+        return list(self._waiting.values())
+
+    async def close(self) -> None:
+        """Waits no longer."""
+        waiting = list(self._waiting)
+        for task in waiting:
+            task.cancel()
+        await asyncio.gather(*waiting, return_exceptions=True)
+
+
+async def _first(ends: tuple[Awaitable[object], ...]) -> None:
+    futures = [asyncio.ensure_future(end) for end in ends]
+    try:
+        await asyncio.wait(futures, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for future in futures:
+            future.cancel()
+        await asyncio.gather(*futures, return_exceptions=True)

@@ -4,8 +4,7 @@ import logging
 from collections.abc import Callable
 
 from aos_protocol.errors import AosError
-from aos_skills.ros.action_client import ActionClient
-from aos_skills.ros.action_server import ActionServer
+from aos_skills.ros.actions import ActionClient, ActionServer
 from aos_skills.ros.node import ActionEnd, ActionRequest, Fields, RunGoal, named_skills
 from aos_skills.ros.ros2_services import Ros2Services
 from aos_skills.ros.types import RosTypes

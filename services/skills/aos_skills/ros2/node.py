@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 import time
 from collections.abc import Awaitable, Callable
@@ -13,8 +14,7 @@ from aos_skills.ros.faults import check_type, node_lost, not_answered, not_serve
 from aos_skills.ros.node import DEFAULT_QOS, Fields, Qos, ServiceRequest, TopicFound
 from aos_skills.ros.ros2_node import Ros2Node
 from aos_skills.ros.types import NO_HASH, RosTypes
-from aos_skills.ros2.graph import Graph
-from aos_skills.ros2.wire import Attachment, Endpoint, Kind, gid_of
+from aos_skills.ros2.wire import Attachment, Endpoint, Kind, endpoint_of, gid_of
 
 _FIRST_ENTITY = 10
 
@@ -193,3 +193,43 @@ def _skill_error(service: str, timeout_s: float, error: BusError) -> SkillError:
     if isinstance(error, NobodyAnswersError):
         return node_lost(service)
     return SkillError(error.message, hint=error.hint)
+
+
+class Graph:
+    """Follows who comes and goes. Names are full, with a leading slash."""
+
+    def __init__(self, bus: ForeignBus, domain: int) -> None:
+        self._endpoints: dict[str, Endpoint] = {}
+        self._has_changed = asyncio.Event()
+        bus.watch(f"@ros2_lv/{domain}/**", self._on_change)
+
+    def _on_change(self, token: str, is_present: bool) -> None:
+        endpoint = endpoint_of(token)
+        if endpoint is None:
+            return
+        if is_present:
+            self._endpoints[token] = endpoint
+        else:
+            self._endpoints.pop(token, None)
+        self._has_changed.set()
+
+    def find(self, kind: Kind, name: str) -> list[Endpoint]:
+        return [one for one in self._endpoints.values() if one.kind is kind and one.name == name]
+
+    def names(self, kind: Kind) -> dict[str, str]:
+        """The names of all topics or services with endpoints of a kind, and their types."""
+        return {one.name: one.type_name for one in self._endpoints.values() if one.kind is kind}
+
+    async def changed(self) -> None:
+        self._has_changed.clear()
+        await self._has_changed.wait()
+
+    async def wait_for(self, kind: Kind, name: str, timeout_s: float) -> Endpoint | None:
+        """The first endpoint of that kind and name; None if none comes in time."""
+        try:
+            async with asyncio.timeout(timeout_s):
+                while not (found := self.find(kind, name)):
+                    await self.changed()
+        except TimeoutError:
+            return None
+        return found[0]

@@ -2,11 +2,7 @@
 
 from aos_skills.pybullet.parts.world import WorldKind
 from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile
-from aos_skills.pybullet.worlds.armadillo.navigate import navigate
-from aos_skills.pybullet.worlds.armadillo.pick import pick
-from aos_skills.pybullet.worlds.armadillo.retract import retract
-from aos_skills.pybullet.worlds.armadillo.sense import sense
-from aos_skills.pybullet.worlds.armadillo.serve import serve
+from aos_skills.pybullet.worlds.armadillo.skills import navigate, pick, retract, sense, serve
 from aos_skills.pybullet.worlds.armadillo.world import Armadillo
 
 __all__ = ["KIND"]

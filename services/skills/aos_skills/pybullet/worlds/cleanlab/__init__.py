@@ -2,10 +2,7 @@
 
 from aos_skills.pybullet.parts.world import WorldKind
 from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile
-from aos_skills.pybullet.worlds.cleanlab.look import look
-from aos_skills.pybullet.worlds.cleanlab.navigate import navigate
-from aos_skills.pybullet.worlds.cleanlab.pick import pick
-from aos_skills.pybullet.worlds.cleanlab.release import release
+from aos_skills.pybullet.worlds.cleanlab.skills import look, navigate, pick, release
 from aos_skills.pybullet.worlds.cleanlab.world import CleanLab
 
 __all__ = ["KIND"]

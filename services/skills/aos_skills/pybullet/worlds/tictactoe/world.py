@@ -1,6 +1,7 @@
 """The Panda, its board, and who plays against it."""
 
 import random
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,9 +15,15 @@ from aos_skills.pybullet.parts.world import World
 from aos_skills.pybullet.robots.panda import PandaWithPen
 from aos_skills.pybullet.worlds.tictactoe.board import CENTRE_M, Board
 from aos_skills.pybullet.worlds.tictactoe.file import TicTacToeFile
-from aos_skills.pybullet.worlds.tictactoe.opponents import opponent
 from aos_skills.pybullet.worlds.tictactoe.person import PersonAtTerminal
-from aos_skills.pybullet.worlds.tictactoe.rules import EMPTY_BOARD, empty_cells, is_over, marked, winner
+from aos_skills.pybullet.worlds.tictactoe.rules import (
+    EMPTY_BOARD,
+    best_moves,
+    empty_cells,
+    is_over,
+    marked,
+    winner,
+)
 
 CAMERA_M = (1.05, 0.0, 0.55)
 PICTURE_SIZE = (480, 360)
@@ -149,3 +156,14 @@ class TicTacToe(World):
             self.board.ink((sum(x for x, _ in points) / len(points), sum(y for _, y in points) / len(points)))
         else:
             self.board.lift()
+
+
+def opponent(file: TicTacToeFile, chance: random.Random, scene: Scene) -> Callable[[str], int]:
+    """Gives the cell of the next cross on a board."""
+    match file.opponent:
+        case "random":
+            return lambda board: chance.choice(empty_cells(board))
+        case "perfect":
+            return lambda board: chance.choice(best_moves(board, "X", file.rules))
+        case "person":
+            return PersonAtTerminal(file.port, scene)

@@ -1,4 +1,4 @@
-"""Pick: reach for the can on the table where the robot stands, close the fingers, lift, fold the arm."""
+"""The skills of the room: each takes the fields of its call, and answers with the result."""
 
 import math
 from typing import Any
@@ -9,8 +9,26 @@ import numpy.typing as npt
 from aos_skills.pybullet.parts.arm import TUCKED
 from aos_skills.pybullet.parts.boom_camera import Colors, top_seen
 from aos_skills.pybullet.robots.mobile_arm.grasp import SHOULDER_AHEAD_M, grasp_from_above
-from aos_skills.pybullet.worlds.armadillo.room import TABLE_TOP_M
-from aos_skills.pybullet.worlds.armadillo.world import Armadillo
+from aos_skills.pybullet.worlds.armadillo.room import TABLE_TOP_M, TRAY_FROM_PERSON_M, TRAY_TOP_M
+from aos_skills.pybullet.worlds.armadillo.world import FOLDED_ELBOW_RAD, Armadillo
+
+CROSSING = (0.0, 0.0)
+"""All ways between the places lead over the middle of the room."""
+
+
+def navigate(world: Armadillo, fields: dict[str, Any]) -> dict[str, Any]:
+    """Drives to a place in the room.
+
+    Takes `x` and `y` in metres and `yaw` in radians; `success` says whether it arrived.
+    """
+    base = world.robot.base
+    x, y, yaw = float(fields["x"]), float(fields["y"]), float(fields["yaw"])
+    at_x, at_y, at_yaw = base.place
+    if math.hypot(x - at_x, y - at_y) < 0.05:
+        return {"success": base.drive_to(x, y, yaw)}
+    has_crossed = base.drive_to(*CROSSING, at_yaw)
+    return {"success": has_crossed and base.drive_to(x, y, yaw)}
+
 
 STRETCHED = (0.0, 0.75, 0.0, -0.75, 0.0, 1.5, 0.785)
 """Arm joint angles in radians of an arm that did not return."""
@@ -26,7 +44,10 @@ LIFT_M = 0.22
 
 
 def pick(world: Armadillo, fields: dict[str, Any]) -> dict[str, Any]:
-    """Takes nothing. `success` is false if the arm stays out; a missed or dropped can is not noticed."""
+    """Reaches for the can on the table where the robot stands, closes the fingers, lifts, folds the arm.
+
+    Takes nothing. `success` is false if the arm stays out; a missed or dropped can is not noticed.
+    """
     robot = world.robot
     robot.gripper.open()
     robot.arm.move(TUCKED)
@@ -91,3 +112,49 @@ def _is_can(colors: Colors) -> npt.NDArray[np.bool_]:
     red, _, blue = np.moveaxis(colors, -1, 0)
     is_can: npt.NDArray[np.bool_] = (blue < 0.35 * red) & (red > 60)
     return is_can
+
+
+SENSING_S = 0.5
+
+
+def sense(world: Armadillo, fields: dict[str, Any]) -> dict[str, Any]:
+    """Stands still while the sensors publish, and answers with what they say at the end; takes nothing."""
+    world.scene.wait(SENSING_S)
+    return {name: value for readings in world.sensors().values() for name, value in readings.items()}
+
+
+def retract(world: Armadillo, fields: dict[str, Any]) -> dict[str, Any]:
+    """Asks the motion planner once more for a way to fold the arm; takes nothing.
+
+    `success` is false if the arm stays where it is; what is in the hand stays there.
+    """
+    is_out = world.robot.arm.angles[3] > FOLDED_ELBOW_RAD
+    if is_out and world.faults.draw("the arm stays out again", world.file.faults.arm_stays_out_again):
+        return {"success": False}
+    return {"success": world.robot.arm.move(TUCKED)}
+
+
+NEAR_M = 1.5
+APPROACH_M = 0.25
+RELEASE_HEIGHT_M = 0.05
+
+
+def serve(world: Armadillo, fields: dict[str, Any]) -> dict[str, Any]:
+    """Holds out what is in the hand over the person's tray, and lets go.
+
+    Takes nothing; reports a delivery whatever happened, as the original robot did.
+    """
+    robot, person = world.robot, world.file.person
+    x, y, _yaw = robot.base.place
+    tray = (person.x - TRAY_FROM_PERSON_M, person.y)
+    if math.dist((x, y), tray) < NEAR_M:
+        robot.base.creep(APPROACH_M)
+        robot.arm.move_tip((*tray, TRAY_TOP_M + LIFT_M))
+        robot.arm.move_tip((*tray, TRAY_TOP_M + RELEASE_HEIGHT_M), speed_m_s=0.15)
+        robot.gripper.open()
+        robot.arm.move_tip((*tray, TRAY_TOP_M + LIFT_M), speed_m_s=0.15)
+        robot.arm.move(TUCKED)
+        robot.base.creep(-APPROACH_M)
+    else:
+        robot.gripper.open()
+    return {"success": True}

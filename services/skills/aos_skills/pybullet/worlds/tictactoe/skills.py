@@ -1,4 +1,4 @@
-"""Draw: a circle in a cell, with the pen on the board. Whether it is there, a picture tells."""
+"""The skills of the player: each takes the fields of its call, and answers with the result."""
 
 from typing import Any
 
@@ -7,6 +7,18 @@ from aos_skills.pybullet.worlds.tictactoe.reading import board_in
 from aos_skills.pybullet.worlds.tictactoe.rules import marked
 from aos_skills.pybullet.worlds.tictactoe.world import TicTacToe
 
+
+def look(world: TicTacToe, fields: dict[str, Any]) -> dict[str, Any]:
+    """Waits until the other one has drawn, takes a picture, and reads the board from it; takes nothing.
+
+    `board` is nine characters, row by row. Empty if there is no board in the picture.
+    """
+    if not world.is_robots_turn and not world.is_over:
+        world.let_other_draw()
+    board = board_in(world.picture())
+    return {"board": board or "", "success": board is not None}
+
+
 CENTRE = 4
 PRESS_M = 0.002
 """The pen is led this far below the surface, so that it stays on it."""
@@ -14,7 +26,10 @@ DRY_ABOVE_M = 0.006
 
 
 def draw(world: TicTacToe, fields: dict[str, Any]) -> dict[str, Any]:
-    """Takes `cell`, 0 to 8; `success` says whether the robot sees a circle there. The turn passes anyway."""
+    """Draws a circle in a cell, with the pen on the board.
+
+    Takes `cell`, 0 to 8; `success` says whether the robot sees a circle there. The turn passes anyway.
+    """
     cell = int(fields["cell"])
     if not 0 <= cell <= 8:
         raise ValueError(f"there is no cell {cell}")
