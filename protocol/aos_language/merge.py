@@ -5,9 +5,8 @@ from collections.abc import Mapping
 import msgspec
 
 from aos_language.findings import Findings
-from aos_language.reading.document import Document, DocumentKind
+from aos_language.reading.document import Document, DocumentKind, is_higher
 from aos_language.reading.files import KnownFiles, is_document_name, read_documents
-from aos_language.reading.version import is_higher
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Project
 

@@ -1,8 +1,14 @@
-"""Work that goes on beside whoever has begun it."""
+"""Work that goes on beside whoever has begun it, and classes that are open until their block ends."""
+
+from __future__ import annotations
 
 import asyncio
+from abc import ABC, abstractmethod
 from collections.abc import Coroutine
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from typing import Self
 
 
 class Background:
@@ -22,3 +28,17 @@ class Background:
         for task in self.tasks:
             task.cancel()
         await asyncio.gather(*self.tasks, return_exceptions=True)
+
+
+class Closing(ABC):
+    """Is closed at the end of an `async with` block, however it ends."""
+
+    @abstractmethod
+    async def close(self) -> None:
+        """Gives up what it has; closing twice does nothing."""
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()

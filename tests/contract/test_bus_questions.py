@@ -32,7 +32,7 @@ from aos_protocol.messages import (
 )
 from aos_runtime.bus.bus import Bus
 from aos_runtime.bus.config import client_config
-from aos_runtime.bus.server_watch import ServerWatch
+from aos_runtime.bus.presence import ServerWatch
 from aos_runtime.processes.children import PIPE, Child
 
 ENTRY = CatalogueEntry("armadillo", 1, "digest", 0, ("pick",))

@@ -13,7 +13,7 @@ from aos_protocol.errors import LostAnswerError, NobodyAnswersError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Catalogue, Message, ProjectQuery
 from aos_runtime.bus.bus import Bus
-from aos_runtime.bus.server_watch import ServerWatch
+from aos_runtime.bus.presence import ServerWatch
 from aos_runtime.processes.parent import PARENT_VARIABLE
 from aos_runtime.processes.settings import ServiceSettings
 

@@ -17,7 +17,7 @@ from places import ROOT
 from processes import HANG_S, finished
 
 from aos_deploy.export.run_bundle import write_bundle
-from aos_gateway.api.use import Use
+from aos_gateway.server import Use
 
 ERRAND = "deploy/bundles/errand"
 

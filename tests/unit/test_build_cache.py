@@ -18,7 +18,7 @@ from aos_solver.building.compiler_run import internal_error
 HOLDER = """
 import asyncio, sys
 from pathlib import Path
-from aos_solver.building.build_lock import build_lock
+from aos_solver.building.build_cache import build_lock
 
 async def hold():
     async with build_lock(Path(sys.argv[1]), 0.0, lambda: None):

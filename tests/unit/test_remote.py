@@ -5,7 +5,7 @@ import pytest
 
 from aos_deploy.deployment.hosts import HOST
 from aos_deploy.processes import ssh_connection
-from aos_deploy.processes.end import told_end
+from aos_deploy.processes.consequence import told_end
 from aos_deploy.processes.program import Program
 from aos_deploy.processes.remote import dialled, is_lost, remote_command, why_it_failed
 from aos_deploy.runs.directory import RunDirectory

@@ -4,7 +4,7 @@ import pytest
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import ActivationId, SkillCall, SkillResult
-from aos_runtime.adapters.ledger import CallLedger
+from aos_runtime.adapters.running_call import CallLedger
 
 ID = ActivationId("mission", 1)
 CALL = SkillCall(ID, "/pick", {}, 10.0)

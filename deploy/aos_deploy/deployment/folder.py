@@ -1,10 +1,9 @@
 """A folder where a deploy file is expected: the one deploy file in it, or what to give in its place."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from aos_deploy.deployment.named_paths import absolute, is_folder, is_there, named
 from aos_deploy.deployment.yaml_source import YamlList, YamlMap, YamlScalar, read_yaml
 from aos_language.load import read_bundle_files
 from aos_protocol.errors import DeployError
@@ -60,3 +59,39 @@ def _named(files: list[Path]) -> str:
 
 def _refusal(path: Path, what: str, hint: str) -> DeployError:
     return DeployError(f"{path} {what}", hint=hint)
+
+
+_LONGEST = 200
+
+
+def is_there(path: Path) -> bool:
+    """Returns whether there is anything; False where there cannot be."""
+    return _holds(path.exists)
+
+
+def is_file(path: Path) -> bool:
+    """Returns whether there is a file; False where there cannot be one."""
+    return _holds(path.is_file)
+
+
+def is_folder(path: Path) -> bool:
+    """Returns whether there is a folder; False where there cannot be one."""
+    return _holds(path.is_dir)
+
+
+def _holds(of_path: Callable[[], bool]) -> bool:
+    try:
+        return of_path()
+    except OSError:
+        return False
+
+
+def absolute(path: Path) -> Path:
+    """The whole path without links; of a link in a circle the path to it."""
+    return Path(os.path.realpath(path))
+
+
+def named(path: Path) -> str:
+    """The path as a message names it, of a very long one the beginning."""
+    text = str(path)
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"

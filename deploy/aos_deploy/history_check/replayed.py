@@ -6,7 +6,7 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.history_check.rules import Violation
+from aos_deploy.history_check.check import Violation
 from aos_deploy.runs.studied import StudiedRun
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary, DecisionRecord

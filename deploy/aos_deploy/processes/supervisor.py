@@ -29,8 +29,10 @@ from aos_deploy.processes.consequence import (
     RunningProgram,
     consequence,
     fatal_end,
+    look_at_log,
+    status_text,
+    told_end,
 )
-from aos_deploy.processes.end import look_at_log, status_text, told_end
 from aos_deploy.processes.log_sizes import keep_logs_short, shorten_all
 from aos_deploy.processes.passes import Outsider, Passes
 from aos_deploy.processes.program import Program

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from aos_lab.formats.pomdp_rewards import RewardRules
 from aos_lab.formats.pomdp_statements import (
     Distribution,
     PomdpTables,
+    RewardRules,
     Statement,
     explicit_model,
     statements_of,

@@ -18,9 +18,17 @@ from aos_language.cpp.facts import (
     Mention,
     OddPart,
 )
-from aos_language.cpp.nodes import below, child_of, field_of, names_of, operator_of, picks_member, text_of
+from aos_language.cpp.nodes import (
+    Places,
+    below,
+    child_of,
+    field_of,
+    names_of,
+    operator_of,
+    picks_member,
+    text_of,
+)
 from aos_language.cpp.odd import idle_parts, is_condition, is_turned, odd_parts
-from aos_language.cpp.places import Places
 from aos_language.cpp.syntax_faults import mistaken_label, unexpected
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Tokens
 

@@ -12,8 +12,7 @@ from tree_sitter import Node
 from aos_language.cpp.evaluation import Evaluation, State, Ways, merged
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import names_in
-from aos_language.cpp.nodes import below, field_of, field_text, operator_of, text_of
-from aos_language.cpp.places import Places
+from aos_language.cpp.nodes import Places, below, field_of, field_text, operator_of, text_of
 from aos_language.cpp.tokens import Extent
 from aos_language.cpp.tree import tree_of
 

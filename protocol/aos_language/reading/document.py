@@ -1,4 +1,4 @@
-"""The result of a reader: one document with its identity."""
+"""The result of a reader: one document with its identity and version."""
 
 import re
 from collections.abc import Iterable
@@ -112,3 +112,27 @@ def check_penalty(skill: str, penalty: float, span: Span, findings: Findings) ->
     if penalty > 0:
         message = f"{skill} earns {penalty:g} where its precondition does not hold"
         findings.warning("AOS147", message, span, f"A penalty is added to the reward: write -{penalty:g}")
+
+
+_VERSION = re.compile(r"\d{1,9}(\.\d{1,9}){0,3}")
+
+
+def read_version(value: Text | None, findings: Findings) -> Text | None:
+    """One to four numbers joined by dots; None, with a warning, for anything else that is there."""
+    if value is None or not value.text:
+        return None
+    if not _VERSION.fullmatch(value.text):
+        hint = "It is not compared; write one to four numbers joined by dots, such as 1.2.0"
+        findings.warning("AOS106", f"{value.text!r} is no version", value.span, hint)
+        return None
+    return value
+
+
+def is_higher(version: str, other: str) -> bool:
+    """Number by number; numbers that are not given are 0."""
+    return _numbers(version) > _numbers(other)
+
+
+def _numbers(version: str) -> list[int]:
+    numbers = [int(number) for number in version.split(".")]
+    return numbers + [0] * (4 - len(numbers))

@@ -3,14 +3,13 @@
 import re
 
 from aos_language.findings import Findings
-from aos_language.reading.document import Document, DocumentKind, check_name
+from aos_language.reading.document import Document, DocumentKind, check_name, read_version
 from aos_language.reading.json_environment import read_environment, read_low_level
 from aos_language.reading.json_mapping import read_mapping
 from aos_language.reading.json_record import Record
 from aos_language.reading.json_skill import read_skill
 from aos_language.reading.json_text import JsonObject, parse_json
 from aos_language.reading.source import Source, Text
-from aos_language.reading.version import read_version
 from aos_protocol.documents import Content
 from aos_protocol.spelling import nearest
 

@@ -3,7 +3,7 @@
 from pathlib import PurePath
 
 from aos_language.findings import Findings
-from aos_language.reading.document import Document, DocumentKind, check_name
+from aos_language.reading.document import Document, DocumentKind, check_name, read_version
 from aos_language.reading.sdl_environment import read_environment
 from aos_language.reading.sdl_low_level import read_low_level
 from aos_language.reading.sdl_mapping import read_mapping
@@ -12,7 +12,6 @@ from aos_language.reading.sdl_skill import read_skill
 from aos_language.reading.sdl_text import Section, parse_sdl
 from aos_language.reading.sdl_words import GRAMMARS
 from aos_language.reading.source import Source, Text
-from aos_language.reading.version import read_version
 
 _KINDS = {
     ".ef": DocumentKind.ENVIRONMENT,

@@ -1,17 +1,21 @@
-"""The messages of an adapter that wait to be sent, from any thread, in order."""
+"""The messages of an adapter that wait to be sent, from any thread, in order, with values made ready."""
 
 import asyncio
 import logging
 import threading
 import time
 from collections import Counter, deque
+from collections.abc import Mapping
 from typing import Any
 
+import msgspec
+
+from aos_protocol.codec import MAX_BYTES
 from aos_protocol.errors import BusError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import TopicMessage
-from aos_runtime.adapters.sendable import sendable
 from aos_runtime.bus.bus import Bus
+from aos_runtime.plain_data import plain_from
 
 MAX_UNSENT_MESSAGES = 10_000
 """The oldest topic messages give way where more than these wait to be sent."""
@@ -103,3 +107,30 @@ class Outbox:
             for topic, number in self._untold.items():
                 _log.warning("%d messages on %s came too fast to be sent", number, topic)
             self._untold, self._told_s = Counter(), time.monotonic()
+
+
+_encoder = msgspec.msgpack.Encoder()
+
+
+def sendable(fields: Mapping[str, Any], what: str) -> dict[str, Any]:
+    """The fields as plain data, such as a list for a numpy array.
+
+    SkillError AOS510 names the field that the bus cannot carry; `what` says of what it is.
+    """
+    plain: dict[str, Any] = {}
+    size_bytes = 0
+    for name, value in fields.items():
+        try:
+            plain[str(name)] = plain_from(value)
+            size_bytes += len(_encoder.encode(plain[str(name)]))
+        except Exception as error:  # Whatever a property of somebody's class raises.
+            raise SkillError(
+                f"the field {name} of {what} cannot be sent: {error}",
+                code="AOS510",
+                hint="Give numbers, texts, bytes, lists and dicts of them, or numpy's arrays",
+            ) from error
+    if size_bytes > MAX_BYTES:
+        hint = "Give less, such as a smaller picture"
+        message = f"{what} has {size_bytes} bytes, and the bus carries {MAX_BYTES}"
+        raise SkillError(message, code="AOS510", hint=hint)
+    return plain

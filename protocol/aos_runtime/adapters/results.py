@@ -9,7 +9,7 @@ from aos_protocol.messages import SkillResult
 from aos_protocol.spelling import error_text
 from aos_runtime.adapters.adapter import Call, Observed
 from aos_runtime.adapters.expressions import translated
-from aos_runtime.adapters.sendable import sendable
+from aos_runtime.adapters.outbox import sendable
 from aos_runtime.adapters.settings import Binding
 
 _shortened = Repr()

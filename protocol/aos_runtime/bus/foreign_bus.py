@@ -18,9 +18,8 @@ import zenoh.ext
 from zenoh.handlers import Callback
 
 from aos_protocol.errors import BusError, LateAnswerError, NobodyAnswersError
-from aos_runtime.background import Background
+from aos_runtime.background import Background, Closing
 from aos_runtime.bus.config import client_config, opened_session
-from aos_runtime.closing import Closing
 
 _RETRY_S = 0.05
 _LATE_S = 0.5

@@ -3,18 +3,20 @@
 import asyncio
 import os
 import socket
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import msgspec
 import uvicorn
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 from aos_deploy.page_address import GatewayNote
 from aos_deploy.places import gateway_folder
+from aos_deploy.runs.living import living_runs
 from aos_gateway.api.access import access_of, kept_token
 from aos_gateway.api.app import make_app
-from aos_gateway.api.use import Use
 from aos_gateway.metrics.counting import Metrics
 from aos_gateway.runs.drawings import Drawings
 from aos_gateway.runs.feed import Watches
@@ -23,6 +25,35 @@ from aos_gateway.runs.shelf import RunShelf
 from aos_gateway.runs.trace import Traces
 from aos_gateway.shared import Gateway
 from aos_protocol.errors import DeployError
+
+_LOOKS = 4
+_LOOK_S = 5.0
+
+
+class Use:
+    """An application that knows since when nobody has asked it anything. A page that is open does ask."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+        self._open = 0
+        self._last_s = time.monotonic()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        self._open += 1
+        try:
+            await self._app(scope, receive, send)
+        finally:
+            self._open -= 1
+            self._last_s = time.monotonic()
+
+    async def until_unused(self, for_s: float) -> None:
+        """Returns once nobody has looked, and no mission of this machine has run, for so many seconds."""
+        while time.monotonic() - self._last_s < for_s:
+            await asyncio.sleep(min(for_s / _LOOKS, _LOOK_S))
+            living = await asyncio.to_thread(living_runs)
+            if self._open or living:
+                self._last_s = time.monotonic()
+
 
 _LAST_STREAMS_S = 1
 """Streams are cut this long after the gateway was told to end."""

@@ -18,9 +18,8 @@ from aos_middleware.mappings.low_level import LowLevelValues
 from aos_middleware.mappings.monitors import Monitors
 from aos_middleware.mappings.revisions import Mappings
 from aos_middleware.robot.motion_gate import MotionGate
-from aos_middleware.robot.odd_numbers import OddNumbers
+from aos_middleware.robot.odd_data import OddNumbers, SilentTopics
 from aos_middleware.robot.served_paths import ServedPaths
-from aos_middleware.robot.silent_topics import SilentTopics
 from aos_middleware.settings import Settings
 from aos_middleware.workers.evaluator import EvaluationLimits, Evaluator
 from aos_protocol.errors import BusError, SkillError

@@ -6,9 +6,8 @@ from typing import NamedTuple
 from aos_middleware.mappings.low_level import LowLevelValues
 from aos_middleware.mappings.monitors import Monitors
 from aos_middleware.robot.motion_gate import MotionGate
-from aos_middleware.robot.odd_numbers import OddNumbers
+from aos_middleware.robot.odd_data import OddNumbers, SilentTopics
 from aos_middleware.robot.served_paths import ServedPaths
-from aos_middleware.robot.silent_topics import SilentTopics
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Stray
 from aos_runtime.bus.bus import Bus

@@ -13,8 +13,7 @@ from xml.etree import ElementTree
 
 import msgspec
 
-from aos_middleware.workers.raised import raised
-from aos_middleware.workers.worker_pipes import take_over_pipes
+from aos_middleware.workers.worker_pipes import raised, take_over_pipes
 
 FILE_NAME = "picture.py"
 MOST_BYTES = 1024 * 1024

@@ -18,7 +18,6 @@ from types import CodeType
 from typing import Any
 
 from aos_middleware.workers import frames
-from aos_middleware.workers.raised import NoTruthValue, raised
 from aos_middleware.workers.values import (
     is_truth,
     message_from,
@@ -27,7 +26,7 @@ from aos_middleware.workers.values import (
     share_what_cannot_be_copied,
     text_of,
 )
-from aos_middleware.workers.worker_pipes import take_over_pipes
+from aos_middleware.workers.worker_pipes import NoTruthValue, raised, take_over_pipes
 from aos_protocol.spelling import shortened
 
 Function = Callable[..., Any]

@@ -4,6 +4,7 @@ import asyncio
 import logging
 import time
 import uuid
+from abc import abstractmethod
 from collections.abc import Callable
 
 from aos_protocol.errors import AosError, SkillError
@@ -19,7 +20,40 @@ from aos_skills.ros.node import (
     RunGoal,
     ServiceRequest,
 )
-from aos_skills.ros.ros2_services import Ros2Services
+from aos_skills.ros.types import RosTypes
+
+
+class Ros2Services(RosNode):
+    """The part of a node that differs by transport."""
+
+    def __init__(self, types: RosTypes) -> None:
+        super().__init__()
+        self.types = types
+
+    @abstractmethod
+    async def until_heard(self, topic: str) -> None:
+        """Returns when whoever publishes a topic knows of the subscription to it, as far as can be known."""
+
+    @abstractmethod
+    async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:
+        """The type of a service that some node serves, which is as it is defined here, and the given one.
+
+        The errors are those of `call`.
+        """
+
+    @abstractmethod
+    def serves(self, service: str) -> bool:
+        """Returns whether some node serves it now."""
+
+    @abstractmethod
+    def services(self) -> list[str]:
+        """The names of all that some node serves now."""
+
+    async def service_gone(self, service: str) -> None:
+        """Returns when nobody serves it."""
+        while self.serves(service):
+            await self.changed()
+
 
 _ASKED_S = 24 * 3600.0
 """A goal that did not end when it was told to may take this long to end after all."""

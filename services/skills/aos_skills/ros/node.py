@@ -5,7 +5,7 @@ from abc import abstractmethod
 from collections.abc import Awaitable, Callable, Iterable
 from typing import Any, NamedTuple
 
-from aos_runtime.closing import Closing
+from aos_runtime.background import Closing
 
 DISCOVERY_S = 5.0
 """A server or publisher may take this long to appear."""

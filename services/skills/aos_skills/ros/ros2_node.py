@@ -4,9 +4,8 @@ import logging
 from collections.abc import Callable
 
 from aos_protocol.errors import AosError
-from aos_skills.ros.actions import ActionClient, ActionServer
+from aos_skills.ros.actions import ActionClient, ActionServer, Ros2Services
 from aos_skills.ros.node import ActionEnd, ActionRequest, Fields, RunGoal, named_skills
-from aos_skills.ros.ros2_services import Ros2Services
 from aos_skills.ros.types import RosTypes
 
 _log = logging.getLogger("aos.ros2")

@@ -6,20 +6,24 @@ were not asked for the longest. No age counts, since clocks are set: whoever use
 what is asked for gets a later stamp than all others have.
 
 Who makes an entry holds its lock (`build_lock`), and others wait for the entry instead of making it as well.
+The kernel holds it for an open file (`flock`) and lets go of it when the process that opened it ends, however
+it ends: nobody has to find out whether an owner lives. One that lives and does not get on is waited for until
+a deadline. Where the file system has no locks, nobody waits.
 """
 
-import contextlib
+import asyncio
+import errno
 import fcntl
 import hashlib
 import os
 import shutil
 import time
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 
 from aos_protocol.errors import StorageError
 from aos_runtime.disk.folder_lock import locked_folder
-from aos_solver.building.build_lock import build_lock, locked
 
 _BUILDING = ".building"
 _SIZE_BYTES = 2 * 2**30
@@ -60,7 +64,7 @@ class BuildCache:
         _USED[status.st_dev, status.st_ino] = handle
         while len(_USED) > _MOST_USED:
             os.close(_USED.pop(next(iter(_USED))))
-        with contextlib.suppress(OSError):
+        with suppress(OSError):
             newest_ns = max(path.lstat().st_mtime_ns for path in self.directory.glob("*-*"))
             os.utime(entry, ns=(max(time.time_ns(), newest_ns + 1),) * 2)
         return entry
@@ -121,7 +125,7 @@ class BuildCache:
         """Removes what killed builds have left, and what is beyond the size of the cache."""
         kept: list[tuple[int, Path]] = []
         for path in self.directory.glob("*-*"):
-            with contextlib.suppress(OSError):
+            with suppress(OSError):
                 if path.is_symlink() or not path.is_dir():
                     continue
                 if path.suffix == _BUILDING:
@@ -175,6 +179,67 @@ def _size_bytes(folder: Path) -> int:
     size_bytes = 0
     for parent, _, names in os.walk(folder):  # What has just gone is left out.
         for name in names:
-            with contextlib.suppress(OSError):
+            with suppress(OSError):
                 size_bytes += Path(parent, name).lstat().st_blocks * 512
     return size_bytes
+
+
+_LOOK_EVERY_S = 0.1
+
+
+@asynccontextmanager
+async def build_lock(path: Path, patience_s: float, on_wait: Callable[[], None]) -> AsyncIterator[None]:
+    """Holds the lock file `path` within the block; goes on without it when `patience_s` are over.
+
+    `on_wait` is called once if somebody else holds it. The file is there only while somebody holds the lock.
+    """
+    until_s = time.monotonic() + patience_s
+    handle = _locked(path)
+    if handle is None and patience_s > 0:
+        on_wait()
+    while handle is None and time.monotonic() < until_s:
+        await asyncio.sleep(_LOOK_EVERY_S)
+        handle = _locked(path)
+    try:
+        yield
+    finally:
+        if handle is not None and handle != _NO_LOCKS:
+            _let_go(path, handle)
+
+
+_NO_LOCKS = -1
+
+
+def _locked(path: Path) -> int | None:
+    """The open file that holds the lock; None while another holds it, `_NO_LOCKS` where there are none."""
+    handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    try:
+        if locked(handle, path, fcntl.LOCK_EX):
+            return handle
+    except OSError as error:
+        os.close(handle)
+        if error.errno in (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS):
+            return _NO_LOCKS
+        raise
+    return None
+
+
+def locked(handle: int, path: Path, kind: int) -> bool:
+    """Takes the lock of an open file; closes it where another holds that, or what `path` names has changed.
+
+    OSError where there are no locks.
+    """
+    try:
+        fcntl.flock(handle, kind | fcntl.LOCK_NB)
+        if os.path.samestat(os.fstat(handle), path.stat()):
+            return True
+    except (BlockingIOError, FileNotFoundError):
+        pass  # Its last holder may just have taken it away.
+    os.close(handle)
+    return False
+
+
+def _let_go(path: Path, handle: int) -> None:
+    with suppress(OSError):
+        path.unlink()  # While it is held: whoever has opened this file already finds that it is gone.
+    os.close(handle)

@@ -2,9 +2,8 @@
 
 from aos_solver.child.process.engine_child import ImpossiblePolicy
 from aos_solver.child.questions.beliefs import BeliefQuestions
-from aos_solver.child.questions.listing import ListingQuestions
 from aos_solver.child.questions.missions import MissionQuestions, Planner, Restriction
-from aos_solver.child.questions.rates import RateQuestions, Stepping
+from aos_solver.child.questions.models import ListingQuestions, RateQuestions, Stepping
 from aos_solver.child.questions.studies import StudyQuestions
 from aos_solver.child.questions.takeovers import TakeoverQuestions
 from aos_solver.child.questions.worlds import WorldQuestions

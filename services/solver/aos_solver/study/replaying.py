@@ -15,8 +15,8 @@ from msgspec.structs import replace
 from aos_protocol import messages
 from aos_protocol.documents import Project
 from aos_protocol.errors import StudyError
+from aos_runtime.background import Closing
 from aos_runtime.clock import SystemClock
-from aos_runtime.closing import Closing
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.beliefs import ExportedBeliefs
 from aos_solver.child.answers.models import Plan

@@ -23,7 +23,7 @@ from aos_protocol.messages import (
     Why,
     WhyQuery,
 )
-from aos_runtime.closing import Closing
+from aos_runtime.background import Closing
 from aos_solver.study.aside import put_aside
 from aos_solver.study.other_circumstances import OtherDocuments, decided_otherwise
 from aos_solver.study.reasons import Reasons

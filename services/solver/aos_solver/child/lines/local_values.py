@@ -1,17 +1,17 @@
-"""The local variables of an outcome as an engine child reads them: values of C++ types, as numbers in a line.
+"""The local variables and numbers of an outcome as an engine child reads them: values of C++, in a line.
 
 The middleware tells them as text: JSON for plain data, Python's `repr` for the rest. The line is what
 `StateReader` in state_text.hpp reads.
 """
 
 import struct
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Annotated, Any
 
 import msgspec
 
 from aos_protocol.codec import UNREADABLE
-from aos_solver.emission.program import Local
+from aos_solver.emission.program import Local, Observed
 
 _SHOWN_CHARACTERS = 60
 _Int = Annotated[int, msgspec.Meta(ge=-(2**31), lt=2**31)]
@@ -66,3 +66,37 @@ def numbers_of(value: Any) -> Iterator[int]:
         yield len(items)
         for item in items:
             yield from numbers_of(item)
+
+
+def numbers_field(observed: Sequence[Observed], numbers: Mapping[str, Any]) -> str:
+    """The field of a command. A name without a number was not observed, nor was None in an array."""
+    parts: list[str] = []
+    for name, index, value in _single_numbers(observed, numbers):
+        parts += str(name), str(index), repr(float(value))
+    return " ".join(parts)
+
+
+def _single_numbers(
+    observed: Sequence[Observed], numbers: Mapping[str, Any]
+) -> Iterator[tuple[int, int, float]]:
+    for name, number in enumerate(observed):
+        value = numbers.get(number.name)
+        values = value if number.is_array and isinstance(value, list | tuple) else [value]
+        yield from ((name, index, element) for index, element in enumerate(values) if element is not None)
+
+
+def numbers_by_name(
+    observed: Sequence[Observed], numbers: Iterable[tuple[int, int, float]]
+) -> dict[str, float | list[float | None]]:
+    """Returns the numbers that an engine child has told, by name."""
+    named: dict[str, float | list[float | None]] = {}
+    for name, index, value in numbers:
+        number = observed[name]
+        if not number.is_array:
+            named[number.name] = value
+            continue
+        array = named.setdefault(number.name, [])
+        assert isinstance(array, list)
+        array += [None] * (index - len(array))
+        array.append(value)
+    return named

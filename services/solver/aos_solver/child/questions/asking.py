@@ -16,7 +16,7 @@ from msgspec.structs import replace
 from aos_language.mission_parameters import ParameterLeaf
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary
-from aos_runtime.closing import Closing
+from aos_runtime.background import Closing
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.beliefs import BeliefUpdate, Believed, Conditioned
 from aos_solver.child.answers.models import EngineDescription, EngineFault, Progress

@@ -19,8 +19,7 @@ from aos_solver.child.answers.beliefs import (
 )
 from aos_solver.child.answers.models import EngineFault
 from aos_solver.child.lines.command_line import command_line, with_change
-from aos_solver.child.lines.local_values import UnusableLocals, local_values_line
-from aos_solver.child.lines.observed_numbers import numbers_field
+from aos_solver.child.lines.local_values import UnusableLocals, local_values_line, numbers_field
 from aos_solver.child.questions.asking import Asking, Done
 
 log = logging.getLogger(__name__)

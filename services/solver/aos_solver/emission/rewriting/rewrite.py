@@ -10,7 +10,7 @@ from aos_language.cpp.keywords import DRAW_SOURCES, STATES
 from aos_language.cpp.loops import DrawingLoop
 from aos_language.cpp.shared import SharedFunction
 from aos_language.cpp.snippets import Call, Cpp, Extent, strip_comments
-from aos_language.cpp.value_names import values_meant
+from aos_language.cpp.values import values_meant
 from aos_language.observed import reports_in
 from aos_solver.emission.program import Edit
 from aos_solver.emission.rewriting.captures import capture_edits
