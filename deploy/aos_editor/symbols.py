@@ -22,7 +22,6 @@ from aos_language.check.models.blocks import (
 from aos_language.check.scope import Scope
 from aos_language.cpp.keywords import CPP_KEYWORDS, OUR_NAMES, SPECIAL_NAMES, STATES
 from aos_language.cpp.snippets import Access, Extent, FaultKind, Mention
-from aos_language.cpp.tokens import line_and_column
 from aos_language.document_code import shared_code_of
 from aos_language.findings import Findings
 from aos_language.local_types import reported_variables
@@ -158,8 +157,7 @@ def _declarations(assembly: Assembly) -> Iterator[Occurrence]:
         if (snippet := environment.shared_code) is not None:
             shared = shared_code_of(environment)
             for item in (*shared.names, *shared.functions):
-                extent = item.name_extent
-                yield declared(SymbolKind.SHARED, item.name, snippet.locate(extent.line, extent.column))
+                yield declared(SymbolKind.SHARED, item.name, snippet.at(item.name_extent.start))
         for variable in environment.variables:
             yield declared(SymbolKind.VARIABLE, variable.name, variable.span)
             yield from typed(variable.type, variable.type_span if variable.type in types else None)
@@ -264,16 +262,15 @@ class _BlockNames:
 
     def _part(self, symbol: Symbol, mention: Mention, index: int) -> Iterator[Occurrence]:
         """The place of a path's part: the words of the text between its start and its end, in order."""
-        text = self._cpp.code[mention.extent.start : mention.extent.end]
+        text = self._cpp.text(mention.extent)
         before = sum(part == symbol.name for part in mention.path[:index])
         places = [word for word in re.finditer(r"\w+", text) if word.group() == symbol.name]
         if before < len(places):
             start = mention.extent.start + places[before].start()
-            span = self._block.snippet.locate(*line_and_column(self._cpp.code, start))
-            yield Occurrence(symbol, span)
+            yield Occurrence(symbol, self._block.snippet.at(start))
 
     def _at(self, symbol: Symbol, extent: Extent) -> Occurrence:
-        return Occurrence(symbol, self._block.snippet.locate(extent.line, extent.column))
+        return Occurrence(symbol, self._block.snippet.at(extent.start))
 
 
 # --- mappings ---

@@ -9,7 +9,6 @@ from collections.abc import Collection, Iterator
 
 from aos_language.cpp.keywords import SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Cpp, DeclarationKind, Extent, Mention
-from aos_language.cpp.tokens import line_and_column
 from aos_language.cpp.values import value_names
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_language.local_types import RESERVED_LOCAL_NAMES
@@ -58,7 +57,7 @@ def derived_mapping(model: SkillModel, environment: Environment | None) -> Abstr
     if responses or has_text:
         locals_.append(_of_result(response, RESPONSE_FIELD, model.span))
     for number in numbers:
-        span = number.snippet.locate(number.extent.line, number.extent.column)
+        span = number.snippet.at(number.extent.start)
         kind = "float[]" if number.is_array else "float"
         locals_.append(_of_result(number.name, number.name, span, kind))
     return AbstractionMapping(
@@ -89,7 +88,7 @@ def sets_response(model: SkillModel) -> Span | None:
     for snippet, cpp in snippets_of(model.dynamic_model):
         for mention in cpp.mentions:
             if mention.path == ("__moduleResponse",) and mention.assigned is not None:
-                return snippet.locate(mention.root.line, mention.root.column)
+                return snippet.at(mention.root.start)
     return None
 
 
@@ -129,10 +128,10 @@ def _responses(model: SkillModel, environment: Environment | None) -> dict[str, 
                 if name in variables and name not in holders:
                     holders.append(name)
                 elif name not in known and name not in declared:
-                    found.setdefault(name, _place(snippet, cpp, offset))
+                    found.setdefault(name, snippet.at(offset))
     if not found:
         found = {
-            mention.path[0]: _place(snippet, cpp, mention.extent.start)
+            mention.path[0]: snippet.at(mention.extent.start)
             for snippet, cpp, mention in reversed(list(_kept_names(read, declared)))
             if mention.path[0] not in known and mention.path[0] not in declared
         }
@@ -145,7 +144,7 @@ def _values_of(variable: str, cpp: Cpp) -> Iterator[tuple[str, int]]:
     extents += [mention.assigned for mention in cpp.mentions if mention.path == (variable,)]
     for extent in extents:
         if extent is not None:
-            text = cpp.code[extent.start : extent.end]
+            text = cpp.text(extent)
             yield from ((name, extent.start + offset) for name, offset in value_names(text))
 
 
@@ -179,10 +178,6 @@ def _within(extent: Extent, cpp: Cpp) -> Iterator[Mention]:
     for mention in cpp.mentions:
         if extent.start <= mention.extent.start < extent.end:
             yield mention
-
-
-def _place(snippet: Snippet, cpp: Cpp, offset: int) -> Span:
-    return snippet.locate(*line_and_column(cpp.code, offset))
 
 
 def _has_text_response(model: SkillModel) -> bool:

@@ -3,6 +3,7 @@ from lint_texts import SKILL, finding_texts
 
 from aos_language.cpp.snippets import read_cpp
 from aos_language.cpp.unset import unset_reads
+from aos_protocol.documents import line_and_column
 
 NEVER = [
     ("bool b; if (b) x = 1;", "b", 13),
@@ -60,7 +61,7 @@ RIGHT = [
 
 def found(code: str) -> list[tuple[str, int, bool]]:
     unset = unset_reads(read_cpp(code), frozenset({"Side"}))
-    return [(variable.name, variable.extent.column, variable.never) for variable in unset]
+    return [(variable.name, variable.extent.start + 1, variable.never) for variable in unset]
 
 
 @pytest.mark.parametrize(("code", "name", "column"), NEVER)
@@ -79,8 +80,9 @@ def test_what_has_or_may_well_have_a_value_is_left_alone(code):
 
 
 def test_places_count_characters_of_the_document_before_semicolons_that_were_put_in():
-    (unset,) = unset_reads(read_cpp('auto t = "ä"; { y = 1 }\nint x;\ny = x;'))
-    assert (unset.extent.line, unset.extent.column) == (3, 5)
+    code = 'auto t = "ä"; { y = 1 }\nint x;\ny = x;'
+    (unset,) = unset_reads(read_cpp(code))
+    assert line_and_column(code, unset.extent.start) == (3, 5)
 
 
 def test_text_that_is_nested_very_deeply_is_read_or_left():

@@ -11,6 +11,7 @@ from aos_language.cpp.snippets import (
     strip_comments,
 )
 from aos_language.cpp.tokens import cut
+from aos_protocol.documents import line_and_column
 
 
 def mentions(code: str) -> list[tuple[str, Access]]:
@@ -106,7 +107,7 @@ def test_overlapping_edits_are_refused():
 def test_places_count_characters_also_behind_wide_ones():
     code = '// größer\nstring s = "naïve"; state.x = 1;'
     (mention,) = [m for m in read_cpp(code).mentions if m.text == "state.x"]
-    assert (mention.extent.line, mention.extent.column) == (2, 21)
+    assert line_and_column(code, mention.extent.start) == (2, 21)
 
 
 @pytest.mark.parametrize(
@@ -126,7 +127,7 @@ def test_places_count_characters_also_behind_wide_ones():
 )
 def test_what_could_leave_the_function_is_found(code, kind, line, column):
     fault = cut(code).faults[0]
-    assert (fault.kind, fault.extent.line, fault.extent.column) == (kind, line, column)
+    assert (fault.kind, *line_and_column(code, fault.extent.start)) == (kind, line, column)
 
 
 @pytest.mark.parametrize(

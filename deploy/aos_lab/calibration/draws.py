@@ -144,10 +144,10 @@ class _Search:
                 variable=variable,
                 skill=skill,
                 kind=call.name[1],
-                span=snippet.locate(call.extent.line, call.extent.column),
+                span=snippet.at(call.extent.start),
                 outcomes=self._outcomes(cpp, call, len(weights)),
                 weights=tuple(float(text.rstrip("fF")) for text in texts),
-                places=tuple(snippet.locate(weight.stands.line, weight.stands.column) for weight in weights),
+                places=tuple(snippet.at(weight.stands.start) for weight in weights),
                 texts=texts,
             )
         )
@@ -164,7 +164,7 @@ class _Search:
         if call.name[1] == "Bernoulli":
             return ("false", "true")
         first = call.arguments[0]
-        name = cpp.code[first.start : first.end].strip()
+        name = cpp.text(first).strip()
         local = [
             enumerator.name
             for enumerator in cpp.declarations
@@ -176,7 +176,7 @@ class _Search:
         )
 
     def _skip(self, snippet: Snippet, call: Call, why: str) -> None:
-        self.skipped.append(Skipped(snippet.locate(call.extent.line, call.extent.column), why))
+        self.skipped.append(Skipped(snippet.at(call.extent.start), why))
 
 
 def _code(text: str, span: Span) -> Snippet:
@@ -212,7 +212,7 @@ def _weights(cpp: Cpp, call: Call) -> list[_Weight] | None:
 
 def _weight(cpp: Cpp, start: int, text: str) -> _Weight | None:
     """A number, or a constant of the same code that is one."""
-    use = Extent.of(cpp.code, start + len(text) - len(text.lstrip()), start + len(text.rstrip()))
+    use = Extent(start + len(text) - len(text.lstrip()), start + len(text.rstrip()))
     if _NUMBER.fullmatch(text.strip()):
         return _Weight(use, use)
     for declaration in cpp.declarations:
@@ -221,7 +221,7 @@ def _weight(cpp: Cpp, start: int, text: str) -> _Weight | None:
             and declaration.initial is not None
             and declaration.type.startswith(("const ", "constexpr "))
         ):
-            value = cpp.code[declaration.initial.start : declaration.initial.end]
+            value = cpp.text(declaration.initial)
             return _Weight(use, declaration.initial) if _NUMBER.fullmatch(value) else None
     return None
 

@@ -11,7 +11,6 @@ from aos_language.check.models.model_code import check_block
 from aos_language.check.scope import Scope
 from aos_language.cpp.keywords import DRAW_SOURCES, STATES
 from aos_language.cpp.snippets import Access, Cpp, read_cpp_expression, strip_comments
-from aos_language.cpp.tokens import line_and_column
 from aos_language.findings import Findings
 from aos_protocol.documents import Constraint, Project, Snippet
 
@@ -69,7 +68,7 @@ def _check_expression(snippet: Snippet, role: Role, findings: Findings) -> None:
     for offset, character in enumerate(code):
         depth += (character in "([{") - (character in ")]}")
         if character == ";" and depth == 0:
-            span = snippet.locate(*line_and_column(code, offset))
+            span = snippet.at(offset)
             findings.error("AOS108", f"{role.title} is one expression", span, "Join conditions by && and ||")
             return
 
@@ -84,7 +83,7 @@ def _check_names(
         name = mention.path[0]
         if name in own or name in _LANGUAGE or name in names:
             continue
-        span = snippet.locate(mention.root.line, mention.root.column)
+        span = snippet.at(mention.root.start)
         if name in DRAW_SOURCES:
             hint = "Name the state that the draw leads to, as `state__.is_out`"
             findings.error("AOS142", f"{role.title} that draws at random", span, hint)

@@ -49,7 +49,7 @@ def _check_default(
 ) -> None:
     for mention in cpp.mentions:
         root = mention.path[0]
-        span = snippet.locate(mention.root.line, mention.root.column)
+        span = snippet.at(mention.root.start)
         if root in DRAW_SOURCES or root in scope.shared.drawing:
             message = f"the default of the mission parameter {variable.name} is drawn at random"
             hint = "It is the same in all states of a mission; let the initial belief draw a state variable"

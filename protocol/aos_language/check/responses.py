@@ -36,7 +36,7 @@ def check_responses(
     enum_values, others = _own_names(model, read)
     for block, mention, may_be_one in _assigned_names(read):
         name = mention.path[0]
-        span = block.snippet.locate(mention.root.line, mention.root.column)
+        span = block.snippet.at(mention.root.start)
         if name in given and name in enum_values | others:
             message = f"`{name}` is declared in this skill too, and hides the response"
             report = findings.error if name in enum_values else findings.warning
@@ -116,7 +116,7 @@ def _check_text_response(
     ]
     if writes and not mapping.response_variable:
         block, mention = writes[0]
-        span = block.snippet.locate(mention.root.line, mention.root.column)
+        span = block.snippet.at(mention.root.start)
         hint = "Name the local variable that holds it with `response_local_variable:`"
         message = f"the abstraction mapping of {model.name} gives no text response"
         findings.warning("AOS116", message, span, hint)
@@ -137,7 +137,7 @@ def _assigned_names(read: list[tuple[Block, Cpp]]) -> Iterator[tuple[Block, Ment
             if mention.path == ("__moduleResponse",) and mention.assigned is not None
         ]
         for extent in extents:
-            can_be = [each for each in values(cpp.code[extent.start : extent.end]) if each[2] >= 0]
+            can_be = [each for each in values(cpp.text(extent)) if each[2] >= 0]
             places = {extent.start + offset for _, _, offset in can_be}
             is_told = all(kind == "identifier" for kind, _, _ in can_be)
             for mention in cpp.mentions:

@@ -141,6 +141,9 @@ class Cpp(msgspec.Struct, frozen=True):
         """The code with the semicolons that it lacks."""
         return self.replace((offset, ";") for offset in self.missing_semicolons)
 
+    def text(self, extent: Extent) -> str:
+        return self.code[extent.start : extent.end]
+
     def writes(self) -> Iterator[Mention]:
         """The mentions through which something changes or may change."""
         changing = (Access.WRITE, Access.UPDATE, Access.BIND)

@@ -14,7 +14,7 @@ from tree_sitter import Node
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.nodes import below, field_of, field_text, operator_of, text_of
-from aos_language.cpp.tokens import Extent, Lines
+from aos_language.cpp.tokens import Extent
 from aos_language.cpp.tree import tree_of
 
 Edits = tuple[tuple[Extent | int, str], ...]
@@ -47,7 +47,7 @@ def counted_conditions(parts: Sequence[Cpp], *, is_expression: bool = False) -> 
     if reading.count < _ENOUGH:
         return ()
     offset = len(_BEFORE[is_expression])
-    return tuple(_placed(cpp.code, edits, offset) for cpp, edits in zip(parts, reading.edits, strict=True))
+    return tuple(_placed(edits, offset) for edits in reading.edits)
 
 
 def _root(cpp: Cpp, is_expression: bool) -> Node | None:
@@ -57,10 +57,9 @@ def _root(cpp: Cpp, is_expression: bool) -> Node | None:
     return None if root.has_error else root
 
 
-def _placed(code: str, edits: list[tuple[int, int, str]], offset: int) -> Edits:
-    lines = Lines(code)
+def _placed(edits: list[tuple[int, int, str]], offset: int) -> Edits:
     return tuple(
-        (start - offset if end == start else lines.extent(start - offset, end - offset), text)
+        (start - offset if end == start else Extent(start - offset, end - offset), text)
         for start, end, text in edits
     )
 

@@ -6,7 +6,6 @@ from the text, such as one in a lambda that names what it captures.
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 
 import msgspec
@@ -15,7 +14,7 @@ from tree_sitter import Node
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.keywords import DRAW_SOURCES
-from aos_language.cpp.nodes import below, field_of, text_of
+from aos_language.cpp.nodes import Places, below, field_of, text_of
 from aos_language.cpp.tree import tree_of
 
 
@@ -81,10 +80,8 @@ _COMPARISONS = ("<", "<=", ">", ">=", "!=")
 class _Reading:
     def __init__(self, root: Node, cpp: Cpp, text: tuple[str, str], scope: Scope) -> None:
         before, complete = text
-        self._before = len(before)
         self._body = root.children[0].child_by_field_name("body") or root
-        self._bytes = complete.encode()
-        self._inserted = [at + index for index, at in enumerate(cpp.missing_semicolons)]
+        self._offset = Places(cpp.code, complete, len(before), cpp.missing_semicolons).offset
         self._before_it = scope
         self._scope = self._with_lambdas(scope)
 
@@ -150,10 +147,6 @@ class _Reading:
             ):
                 return None
         return self._offset(start), self._offset(end)
-
-    def _offset(self, byte: int) -> int:
-        characters = len(self._bytes[: byte - self._before].decode("utf-8", "replace"))
-        return characters - bisect_left(self._inserted, characters)
 
 
 def _visible(loop: Node, around: frozenset[str], lambdas: frozenset[str]) -> frozenset[str] | None:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from tree_sitter import Node
 
-from aos_language.cpp.tokens import Extent, Lines
+from aos_language.cpp.tokens import Extent
 
 
 def text_of(node: Node) -> str:
@@ -73,16 +73,15 @@ class Places:
     def __init__(self, code: str, complete: str, prefix: int, missing_semicolons: Sequence[int]) -> None:
         self._length = len(code)
         self._prefix = prefix
-        self._lines = Lines(code)
         self._offsets = _character_offsets(complete)
         self._inserted = [at + index for index, at in enumerate(missing_semicolons)]
 
     def extent(self, node: Node) -> Extent:
         """Returns where a node stands; what is around the code has a place without length."""
-        start, end = (self._offset(byte) for byte in (node.start_byte, node.end_byte))
-        return self._lines.extent(start, end)
+        return Extent(self.offset(node.start_byte), self.offset(node.end_byte))
 
-    def _offset(self, byte: int) -> int:
+    def offset(self, byte: int) -> int:
+        """Returns the character of the code at a byte of the tree's text."""
         offset = max(byte - self._prefix, 0)
         if self._offsets is not None:
             offset = self._offsets[min(offset, len(self._offsets) - 1)]

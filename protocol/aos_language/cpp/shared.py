@@ -15,9 +15,9 @@ from tree_sitter import Node
 
 from aos_language.cpp.facts import READING_FUNCTIONS
 from aos_language.cpp.keywords import DRAW_SOURCES
-from aos_language.cpp.nodes import below, field_of, field_text, text_of
+from aos_language.cpp.nodes import Places, below, field_of, field_text, text_of
 from aos_language.cpp.snippets import Cpp, read_cpp_declarations
-from aos_language.cpp.tokens import Extent, Lines
+from aos_language.cpp.tokens import Extent
 from aos_language.cpp.tree import tree_of
 
 
@@ -97,7 +97,7 @@ class SharedCode(msgspec.Struct, frozen=True):
         """The constants that are whole numbers, as they are written."""
         constants = {name.name for name in self.names if name.kind == "constant"}
         values = {
-            declaration.name: self.cpp.code[declaration.initial.start : declaration.initial.end]
+            declaration.name: self.cpp.text(declaration.initial)
             for declaration in self.cpp.declarations
             if declaration.name in constants and declaration.initial is not None
         }
@@ -141,8 +141,7 @@ class _Reading:
     """One walk over the declarations."""
 
     def __init__(self, code: str, cpp: Cpp, compounds: frozenset[str]) -> None:
-        self._data = code.encode()
-        self._lines = Lines(code)
+        self._extent = Places(code, cpp.complete, 0, cpp.missing_semicolons).extent
         self._cpp = cpp
         self._names: list[SharedName] = []
         self._functions: list[SharedFunction] = []
@@ -279,8 +278,8 @@ class _Reading:
                 self._extent(node),
                 self._extent(name),
                 True,
-                self._offset(parameters.start_byte) + 1,
-                self._offset(body.start_byte) + 1,
+                self._extent(parameters).start + 1,
+                self._extent(body).start + 1,
                 bool(declared),
                 only_reads=only_reads,
                 gives_handle=gives_handle,
@@ -297,13 +296,6 @@ class _Reading:
 
     def _misuse(self, node: Node, message: str, hint: str) -> None:
         self._misuses.append(SharedMisuse(self._extent(node), message, hint))
-
-    def _extent(self, node: Node) -> Extent:
-        return self._lines.extent(self._offset(node.start_byte), self._offset(node.end_byte))
-
-    def _offset(self, byte: int) -> int:
-        """The tree's text has the code's missing semicolon at most behind it."""
-        return len(self._data[:byte].decode("utf-8", "replace"))
 
 
 _QUALIFIERS = ("type_qualifier", "storage_class_specifier")

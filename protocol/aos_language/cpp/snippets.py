@@ -76,7 +76,7 @@ def _read(code: str, tokens: Tokens, *, before: str, after: str) -> Cpp:
     complete = Cpp(code, missing_semicolons=tokens.missing_semicolons).complete
     root = tree_soon(before + complete + after)
     if root is None:
-        whole = Extent(0, len(code), 1, 1)
+        whole = Extent(0, len(code))
         fault = Fault(FaultKind.SIZE, "this code takes too long to read", whole, "Write less of it, or C++")
         return Cpp(code, literals=tokens.literals, faults=(fault,))
     return TreeReader(code, complete, len(before), tokens).read(root)

@@ -6,10 +6,9 @@ digraphs, raw strings and digit separators are read as the compiler reads them, 
 
 import re
 import unicodedata
-from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import msgspec
 
@@ -51,22 +50,10 @@ _CLOSES = {opening: closing for closing, opening in _PARTNER.items()}
 
 
 class Extent(NamedTuple):
-    """A piece of a code text: `code[start:end]`; line and column of its start count from 1."""
+    """A piece of a code text: `code[start:end]`."""
 
     start: int
     end: int
-    line: int
-    column: int
-
-    @classmethod
-    def of(cls, code: str, start: int, end: int) -> Self:
-        """The extent of `code[start:end]`."""
-        return cls(start, end, *line_and_column(code, start))
-
-
-def line_and_column(code: str, offset: int) -> tuple[int, int]:
-    """The place of a character of a text, counted from 1."""
-    return code.count("\n", 0, offset) + 1, offset - code.rfind("\n", 0, offset)
 
 
 _IN_PLACE_OF = {
@@ -130,20 +117,8 @@ class Tokens(msgspec.Struct, frozen=True):
     missing_semicolons: tuple[int, ...]
 
 
-class Lines:
-    """Line and column of every offset of a text."""
-
-    def __init__(self, text: str) -> None:
-        self._starts = [0, *(match.end() for match in re.finditer("\n", text))]
-
-    def extent(self, start: int, end: int) -> Extent:
-        line = bisect_right(self._starts, start)
-        return Extent(start, end, line, start - self._starts[line - 1] + 1)
-
-
 def cut(code: str) -> Tokens:
     """The tokens of a snippet; every fault of it, in text order."""
-    lines = Lines(code)
     comments: list[Extent] = []
     literals: list[Extent] = []
     faults: list[Fault] = []
@@ -157,7 +132,7 @@ def cut(code: str) -> Tokens:
             statements.take(match.group(), match.end())
         if kind in ("word", "number", "scope") or (kind == "other" and match.group() not in _FROM_A_PAGE):
             continue
-        extent = lines.extent(*match.span())
+        extent = Extent(*match.span())
         if kind == "raw":
             closing = f'){match["delimiter"]}"'
             end = code.find(closing, position)
@@ -165,7 +140,7 @@ def cut(code: str) -> Tokens:
                 faults.append(Fault(FaultKind.QUOTE, "this raw string is never closed", extent))
                 break
             position = end + len(closing)
-            extent = lines.extent(match.start(), position)
+            extent = Extent(match.start(), position)
         if kind in ("raw", "string", "char"):
             literals.append(extent)
             if kind == "char" and _ONE_CHARACTER.fullmatch(match.group()) is None:
@@ -177,14 +152,14 @@ def cut(code: str) -> Tokens:
             faults += brackets.take(match.group(), extent)
         elif kind == "directive":
             start = match.end() - len(match.group().lstrip())
-            faults.append(_directive(match.group(), lines.extent(start, match.end())))
+            faults.append(_directive(match.group(), Extent(start, match.end())))
         elif kind == "hash":
             faults.append(_no_comment(extent))
         elif kind == "arrow":
             message, hint = f"`{match.group()}` is no operator of C++", f"Write `{match.group()[::-1]}`"
             faults.append(Fault(FaultKind.CHARACTER, message, extent, hint))
         elif kind == "list":
-            faults.append(_list_of_python(lines.extent(code.index("[", match.start()), match.end()), code))
+            faults.append(_list_of_python(Extent(code.index("[", match.start()), match.end()), code))
         elif kind == "other":
             faults.append(_from_a_page(match.group(), extent))
         elif kind == "continuation":
@@ -196,7 +171,7 @@ def cut(code: str) -> Tokens:
             faults.append(Fault(FaultKind.QUOTE, f"this {match.group()} has no partner on its line", extent))
             position = _end_of_line(code, position)
     faults += brackets.still_open()
-    faults += _python_lines(code, lines, (*comments, *literals))
+    faults += _python_lines(code, (*comments, *literals))
     faults.sort(key=lambda fault: fault.extent.start)
     return Tokens(tuple(comments), tuple(literals), tuple(faults), statements.missing_semicolons())
 
@@ -305,10 +280,10 @@ def _from_a_page(character: str, extent: Extent) -> Fault:
     return Fault(FaultKind.CHARACTER, f"a {name} is no character of C++", extent, hint, instead)
 
 
-def _python_lines(code: str, lines: Lines, elsewhere: Sequence[Extent]) -> Iterator[Fault]:
+def _python_lines(code: str, elsewhere: Sequence[Extent]) -> Iterator[Fault]:
     """The first line with a statement of Python that C++ does not have."""
     for match in _PYTHON_LINE.finditer(code):
-        extent = lines.extent(*match.span("word"))
+        extent = Extent(*match.span("word"))
         is_text = any(part.start <= extent.start < part.end for part in elsewhere)
         if not is_text and match["head"].count("(") == match["head"].count(")"):
             hint = "The model's code is C++: `if (...) { ... } else { ... }`"

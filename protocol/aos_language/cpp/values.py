@@ -8,7 +8,7 @@ from tree_sitter import Node
 from aos_language.cpp.facts import Cpp, DeclarationKind
 from aos_language.cpp.keywords import STATES
 from aos_language.cpp.nodes import below, field_of, operator_of, text_of
-from aos_language.cpp.tokens import Extent, Lines
+from aos_language.cpp.tokens import Extent
 from aos_language.cpp.tree import tree_of
 
 _VALUES = {
@@ -81,9 +81,8 @@ def values_meant(cpp: Cpp, names: frozenset[str]) -> tuple[Extent, ...]:
     variables = {
         d.name for d in cpp.declarations if d.kind is DeclarationKind.VARIABLE and _NUMBERS.search(d.type)
     }
-    lines = Lines(cpp.code)
     return tuple(
-        lines.extent(node.start_byte - len(_BEFORE), node.end_byte - len(_BEFORE))
+        Extent(node.start_byte - len(_BEFORE), node.end_byte - len(_BEFORE))
         for node in below(tree_of(_BEFORE + cpp.complete + "\n}"))
         if node.type == "identifier" and text_of(node) in names and _is_value(node, variables)
     )

@@ -8,10 +8,10 @@ from collections.abc import Iterable
 
 from msgspec.structs import replace
 
-from aos_language.cpp.tokens import cut, line_and_column
+from aos_language.cpp.tokens import cut
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Mend
-from aos_protocol.documents import Assignment, Iteration, Snippet
+from aos_protocol.documents import Assignment, Iteration, Snippet, line_and_column
 
 _GLUED = re.compile(
     r"\belse(state_{0,3}|if|for|while|switch|return|break|continue|AOS|AOSUtils|__[A-Za-z]\w*)\b"

@@ -1,8 +1,24 @@
 """Code in documents: text with its places, and the blocks that it stands in."""
 
+from bisect import bisect_right
+from functools import lru_cache
+from itertools import accumulate
+
 import msgspec
 
 from aos_protocol.diagnostics import Span
+
+
+@lru_cache(maxsize=256)
+def _line_starts(text: str) -> tuple[int, ...]:
+    return tuple(accumulate((len(line) + 1 for line in text.split("\n")), initial=0))
+
+
+def line_and_column(text: str, offset: int) -> tuple[int, int]:
+    """The place of a character of a text, counted from 1."""
+    starts = _line_starts(text)
+    line = bisect_right(starts, offset)
+    return line, offset - starts[line - 1] + 1
 
 
 class Snippet(msgspec.Struct, frozen=True):
@@ -21,6 +37,10 @@ class Snippet(msgspec.Struct, frozen=True):
     def span(self) -> Span:
         """The place where the snippet starts."""
         return self.origins[0]
+
+    def at(self, offset: int) -> Span:
+        """The document place of a character of `code`."""
+        return self.locate(*line_and_column(self.code, offset))
 
     def locate(self, line: int, column: int = 1) -> Span:
         """The document place of a line and column of `code`, both from 1; clamped to the snippet."""

@@ -13,7 +13,7 @@ from aos_language.check.scope import Scope
 from aos_language.cpp.keywords import CPP_KEYWORDS, OUR_NAMES, SPECIAL_NAMES
 from aos_language.cpp.snippets import Access
 from aos_language.findings import Findings
-from aos_protocol.documents import Assignment, Environment, Project, SkillModel
+from aos_protocol.documents import Assignment, Environment, Project, SkillModel, line_and_column
 from aos_protocol.spelling import nearest
 
 _OWN_TYPE = re.compile(r"\b(?:class|enum|struct|typedef|typename|union|using)\s+(?:class\s+)?(\w+)")
@@ -48,10 +48,11 @@ def check_bare_names(assembly: Assembly, compiled: Project | None, findings: Fin
                 name = mention.path[0]
                 if name in names | foreign or counts[name] > 1 or name.startswith("__"):
                     continue
-                if "__moduleResponse" in block.snippet.code.splitlines()[mention.root.line - 1]:
+                line, _ = line_and_column(block.snippet.code, mention.root.start)
+                if "__moduleResponse" in block.snippet.code.splitlines()[line - 1]:
                     continue  # A response that its mapping gives, told as one.
                 close = nearest(name, scope.shared.all_names if mention.access is Access.CALL else names)
-                span = block.snippet.locate(mention.root.line, mention.root.column)
+                span = block.snippet.at(mention.root.start)
                 if close and (span.file, span.line) not in told:
                     findings.unknown(name, (close,), f"unknown name `{name}`", span)
 

@@ -43,9 +43,7 @@ def check_built_in(
     if owner in BUILT_INS and name not in BUILT_INS[owner]:
         known = BUILT_INS[owner]
         start = call.function.start + text.rfind(name)
-        column = call.function.column + start - call.function.start
-        place = Extent(start, start + len(name), call.function.line, column)
-        of_name = span if "\n" in text else span_of(place)
+        of_name = span if "\n" in text else span_of(Extent(start, start + len(name)))
         findings.unknown(name, known, f"{owner} has no `{name}`", of_name, f"It has {quoted(known)}")
     elif owner in BUILT_INS and (written := _WITH_TYPE.fullmatch(text)):
         _typed(owner, name, written["type"], call, code, span, findings)

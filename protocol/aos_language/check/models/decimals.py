@@ -33,15 +33,15 @@ def check_decimals(environment: Environment, scope: Scope, findings: Findings) -
         for mention in cpp.mentions:
             _check_compared(mention, block, cpp, computed, scope, findings)
         for divided in _divided_wholes(block, cpp, scope):
-            span = block.snippet.locate(divided.line, divided.column)
-            text = cpp.code[divided.start : divided.end]
+            span = block.snippet.at(divided.start)
+            text = cpp.text(divided)
             message = f"`{text}` is a whole number: the fraction of this probability is cut off"
             first, rest = text.split("/", 1)
             real = f"{first.strip()}.0 /{rest}" if first.strip().isdigit() else f"1.0 * {text}"
             findings.warning("AOS149", message, span, f"Write `{real}`")
         for name, given in _wholes(block, cpp, scope):
-            text = cpp.code[given.start : given.end].strip()
-            span = block.snippet.locate(given.line, given.column)
+            text = cpp.text(given).strip()
+            span = block.snippet.at(given.start)
             hint = "The fraction is cut off: round it, or count in a smaller unit"
             findings.warning("AOS149", f"`{name}` is a whole number, and `{text}` is none", span, hint)
 
@@ -53,7 +53,7 @@ def _check_compared(
     kind = _type_of(mention.path, block, scope) if compared is not None else ""
     if compared is None or Fraction(compared[1]) == Fraction(float(compared[1])):
         return
-    span = block.snippet.locate(mention.extent.line, mention.extent.column)
+    span = block.snippet.at(mention.extent.start)
     hint = f"Write `std::abs({mention.text} - {compared[1]}) < 1e-6`"
     if kind == "float":
         findings.warning("AOS149", f"no float is exactly {compared[1]}", span, hint)
@@ -71,7 +71,7 @@ def _wholes(block: Block, cpp: Cpp, scope: Scope) -> Iterator[tuple[str, Extent]
         given = mention.assigned
         if given is None or not _SET.fullmatch(cpp.code[mention.extent.end : given.start]):
             continue
-        text = cpp.code[given.start : given.end]
+        text = cpp.text(given)
         is_time = mention.path == (_TIME,) and block.role is DURATION
         is_real = is_time and _REAL.search(text) and not _ROUNDED.search(text)
         if is_real or (
@@ -80,18 +80,18 @@ def _wholes(block: Block, cpp: Cpp, scope: Scope) -> Iterator[tuple[str, Extent]
             yield mention.text, given
     for declared in cpp.declarations:
         given = declared.initial
-        text = cpp.code[given.start : given.end] if given is not None else ""
+        text = cpp.text(given) if given is not None else ""
         if given is not None and declared.type in ("int", "const int") and _FRACTION.fullmatch(text):
             yield declared.name, given
     if block.type == "int" and _FRACTION.fullmatch(cpp.code):
-        yield block.sets, Extent(0, len(cpp.code), 1, 1)
+        yield block.sets, Extent(0, len(cpp.code))
 
 
 def _divided_wholes(block: Block, cpp: Cpp, scope: Scope) -> Iterator[Extent]:
     """The divisions of whole numbers that stand in probabilities and weights."""
     kinds = {each.name: each.type.removeprefix("const ") for each in cpp.declarations}
     kinds |= {
-        cpp.code[each.extent.start : each.extent.end]: _type_of(each.path, block, scope)
+        cpp.text(each.extent): _type_of(each.path, block, scope)
         for each in cpp.mentions
         if each.path[0] not in kinds
     }
@@ -103,13 +103,13 @@ def _divided_wholes(block: Block, cpp: Cpp, scope: Scope) -> Iterator[Extent]:
                 sides = [side for side in found.groups() if not side.isdigit()]
                 are_whole = sides and all(kinds.get(side) in ("int", "size_t", "unsigned") for side in sides)
                 if are_whole and not _CALCULATED.search(cpp.code, argument.start, found.start()):
-                    yield Extent.of(cpp.code, *found.span())
+                    yield Extent(*found.span())
 
 
 def _computed(cpp: Cpp) -> Iterator[str]:
     """The last names of what a calculation or a draw sets."""
     for mention in cpp.mentions:
-        given = cpp.code[mention.assigned.start : mention.assigned.end] if mention.assigned else ""
+        given = cpp.text(mention.assigned) if mention.assigned else ""
         if (mention.access is Access.UPDATE and not mention.method) or _COMPUTED.search(given):
             yield _last_name(mention.path)
 

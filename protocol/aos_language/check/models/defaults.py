@@ -37,7 +37,7 @@ def _check_order(variable: StateVariable, later: set[str], findings: Findings) -
             root, *names = mention.path
             if root == "state" and names and names[0] in later and mention.access is Access.READ:
                 assert snippet is not None
-                place = snippet.locate(mention.root.line, mention.root.column)
+                place = snippet.at(mention.root.start)
                 message = f"the default of {variable.name} reads `{mention.text}` before that has its own"
                 findings.warning("AOS141", message, place, f"Declare {variable.name} below {names[0]}")
 
@@ -61,4 +61,4 @@ def _element(variable: StateVariable, mention: Mention) -> str:
 
 def _span(variable: StateVariable, mention: Mention) -> Span:
     assert variable.default_code is not None
-    return variable.default_code.locate(mention.root.line, mention.root.column)
+    return variable.default_code.at(mention.root.start)

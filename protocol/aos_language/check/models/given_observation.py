@@ -19,7 +19,7 @@ def check_given_observation(model: SkillModel, mapping: AbstractionMapping, find
             kind = f"the type {variable.type}" if variable.type else "no type"
             message = f"the local variable `{variable.name}` has {kind}, so model code cannot use it"
             hint = f"Give it one in the abstraction mapping: {local_type_text()}"
-            span = block.snippet.locate(mention.root.line, mention.root.column)
+            span = block.snippet.at(mention.root.start)
             findings.error("AOS110", message, span, hint)
 
 

@@ -247,7 +247,7 @@ class MentionCheck:
     def _check_truth(self, mention: Mention) -> None:
         """A truth is given no text: the compiler takes each for true, `"false"` too."""
         given = mention.assigned
-        if given is not None and _TEXT.fullmatch(self._cpp.code[given.start : given.end].strip()):
+        if given is not None and _TEXT.fullmatch(self._cpp.text(given).strip()):
             message = f"`{mention.text}` is true or false, and this is a text"
             self._findings.error(
                 "AOS106", message, self._span(given), "Write `true` or `false`, without quotes"
@@ -255,7 +255,7 @@ class MentionCheck:
 
     def _check_index(self, subscript: Extent, enum: str) -> None:
         """An array over an enum is indexed by its values, or by numbers."""
-        name = self._cpp.code[subscript.start : subscript.end]
+        name = self._cpp.text(subscript)
         values, owner = self._scope.enums[enum].values, self._scope.enum_values.get(name)
         if name in values or name in self._locals or name in self._declared or name in self._block.names:
             return
@@ -267,18 +267,13 @@ class MentionCheck:
             self._findings.unknown(name, values, f"{enum} has no `{name}`", self._span(subscript))
 
     def _span(self, extent: Extent) -> Span:
-        return self._block.snippet.locate(extent.line, extent.column)
+        return self._block.snippet.at(extent.start)
 
     def _part_span(self, extent: Extent, part: str) -> Span:
         """Returns the place of a name inside a path."""
-        text = self._cpp.code[extent.start : extent.end]
+        text = self._cpp.text(extent)
         match = re.search(rf"(?<![\w]){re.escape(part)}(?!\w)", text)
-        if match is None:
-            return self._span(extent)
-        before = text[: match.start()]
-        line = extent.line + before.count("\n")
-        column = match.start() - before.rfind("\n") if "\n" in before else extent.column + match.start()
-        return self._block.snippet.locate(line, column)
+        return self._block.snippet.at(extent.start + (match.start() if match is not None else 0))
 
 
 def check_objects(compound: str, what: str, span: Span, findings: Findings) -> None:
@@ -308,4 +303,4 @@ def subscripts_of(mention: Mention, code: str) -> Iterator[Extent | None]:
             depth -= 1
             if depth == 0:
                 match = _LONE_NAME.fullmatch(code, start, at)
-                yield Extent.of(code, *match.span(1)) if match is not None else None
+                yield Extent(*match.span(1)) if match is not None else None

@@ -20,7 +20,6 @@ from aos_language.check.scope import Scope
 from aos_language.check.shared_calls import check_shared_call
 from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Call, Cpp, DeclarationKind, Extent, FaultKind, read_cpp
-from aos_language.cpp.tokens import line_and_column
 from aos_language.cpp.unset import unset_reads
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Mend, Span
@@ -195,7 +194,7 @@ class _BlockCheck:
             report("AOS149", message, span, hint, mend)
         name = "__meetPrecondition" if self._block.role is PRECONDITION else "NAME"
         for value in self._cpp.idle_values:
-            hint = f"To set a variable, write `{name} = {self._cpp.code[value.start : value.end]};`"
+            hint = f"To set a variable, write `{name} = {self._cpp.text(value)};`"
             self._findings.warning("AOS149", "this statement does nothing", self._span(value), hint)
         for odd in self._cpp.odd_parts:
             is_of_enums = {*odd.of_enums} <= {*self._scope.enum_values} - {*self._locals}
@@ -205,7 +204,7 @@ class _BlockCheck:
     def _check_conditions(self) -> None:
         """A condition that sets something; where it may not write that, this has been told already."""
         for left, operator in self._cpp.set_in_conditions if self._block.role is not DEFAULT else ():
-            text = self._cpp.code[left.start : left.end]
+            text = self._cpp.text(left)
             if text.partition(".")[0].strip() in {*STATES} - {*self._block.role.writes}:
                 continue
             span = self._span(operator)
@@ -224,7 +223,7 @@ class _BlockCheck:
     def _check_semicolons(self) -> None:
         idle = {value.end for value in self._cpp.idle_values}
         for offset in [each for each in self._cpp.missing_semicolons if each not in idle]:
-            span = self._block.snippet.locate(*line_and_column(self._cpp.code, offset))
+            span = self._block.snippet.at(offset)
             mend = Mend(span, 0, ";")
             self._findings.warning("AOS127", "a semicolon is missing here", span, "It is put in", mend)
 
@@ -244,7 +243,7 @@ class _BlockCheck:
         if call.name[1] != "SampleDiscrete":
             return
         place = call.arguments[0] if call.arguments else call.function
-        name = self._cpp.code[place.start : place.end].strip()
+        name = self._cpp.text(place).strip()
         is_list = name.startswith("{")
         if len(call.arguments) not in (1, 2) or name[:1].isdigit() or (is_list and len(call.arguments) == 2):
             right = (
@@ -282,4 +281,4 @@ class _BlockCheck:
             self._findings.unknown(name, {"true", "false", *known}, message, self._span(mentions[0].root))
 
     def _span(self, extent: Extent) -> Span:
-        return self._block.snippet.locate(extent.line, extent.column)
+        return self._block.snippet.at(extent.start)

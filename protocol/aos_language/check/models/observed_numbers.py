@@ -26,14 +26,14 @@ def check_reports(model: SkillModel, findings: Findings) -> None:
             continue
         cpp = read_block(block)
         for misuse in misuses_of(cpp):
-            span = block.snippet.locate(misuse.extent.line, misuse.extent.column)
+            span = block.snippet.at(misuse.extent.start)
             findings.error("AOS138", misuse.message, span, misuse.hint)
         for report in reports_in(cpp):
             if kinds.setdefault(report.name, report.is_array) != report.is_array:
                 extent = report.mention.extent
                 message = f"`{OBSERVED}.{report.name}` is reported as one number and as an array"
                 hint = "Choose another name for one of them"
-                findings.error("AOS138", message, block.snippet.locate(extent.line, extent.column), hint)
+                findings.error("AOS138", message, block.snippet.at(extent.start), hint)
 
 
 def check_observed_numbers(
@@ -43,7 +43,7 @@ def check_observed_numbers(
     variables = {variable.name: variable for variable in mapping.local_variables}
     reported = reported_variables(mapping, environment) if environment is not None else ()
     for number in reported_numbers(model):
-        span = number.snippet.locate(number.extent.line, number.extent.column)
+        span = number.snippet.at(number.extent.start)
         variable = variables.get(number.name)
         if variable is None:
             message = f"the abstraction mapping of {model.name} has no local variable `{number.name}`"
@@ -76,6 +76,6 @@ def _check_other_sections(blocks: Iterator[Block], findings: Findings) -> None:
     for block in blocks:
         for mention in read_block(block).mentions:
             if mention.path[0] == OBSERVED:
-                span = block.snippet.locate(mention.root.line, mention.root.column)
+                span = block.snippet.at(mention.root.start)
                 message = f"`{OBSERVED}` in {block.role.title}"
                 findings.error("AOS138", message, span, "Only the dynamic model of a skill reports numbers")

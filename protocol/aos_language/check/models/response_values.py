@@ -10,7 +10,6 @@ from aos_language.check.models.blocks import Block
 from aos_language.check.scope import Scope
 from aos_language.cpp.keywords import STATES
 from aos_language.cpp.snippets import Cpp
-from aos_language.cpp.tokens import line_and_column
 from aos_language.cpp.values import values
 from aos_language.findings import Findings
 from aos_protocol.spelling import quoted
@@ -31,8 +30,8 @@ def check_response_values(
             if mention.assigned is None or not (is_text or mention.path == ("__moduleResponse",)):
                 continue
             assigned = mention.assigned
-            for kind, value, offset in values(cpp.code[assigned.start : assigned.end]):
-                span = block.snippet.locate(*line_and_column(cpp.code, assigned.start + offset))
+            for kind, value, offset in values(cpp.text(assigned)):
+                span = block.snippet.at(assigned.start + offset)
                 is_number = kind == "number_literal"
                 if is_text and (type_name := "number" if is_number else _type_of(value, block, cpp, scope)):
                     message = f"__moduleResponseStr takes a text, and `{value}` is of the type {type_name}"

@@ -21,13 +21,13 @@ def check_shared_code(environment: Environment, scope: Scope, findings: Findings
         return
     shared = shared_code_of(environment)
     for misuse in shared.misuses:
-        span = snippet.locate(misuse.extent.line, misuse.extent.column)
+        span = snippet.at(misuse.extent.start)
         findings.error("AOS145", misuse.message, span, misuse.hint)
     of_types = {*scope.enums, *scope.compounds, *scope.enum_values, *scope.low_level_names}
     functions = {function.name for function in shared.functions}
     first: dict[str, SharedName] = {}
     for item in (*shared.names, *shared.functions):
-        span = snippet.locate(item.name_extent.line, item.name_extent.column)
+        span = snippet.at(item.name_extent.start)
         other = first.setdefault(item.name, item) if item.name else item
         if item.name in CPP_KEYWORDS or item.name in SPECIAL_NAMES:
             findings.error("AOS126", f"`{item.name}` means something else", span, "Choose another name")
@@ -35,7 +35,7 @@ def check_shared_code(environment: Environment, scope: Scope, findings: Findings
             message = f"`{item.name}` is already the name of a type, an enum value or a low-level value"
             findings.error("AOS126", message, span, "Choose another name")
         elif other is not item and not (item.name in functions and other in shared.functions):
-            place = snippet.locate(other.name_extent.line, other.name_extent.column)
+            place = snippet.at(other.name_extent.start)
             findings.error("AOS126", f"a second `{item.name}`", span, f"The first is at {place}")
 
 
@@ -63,6 +63,6 @@ def check_shared_names_are_used(
         named = words.union(_WORD.findall(others))
         if not item.name or not named.isdisjoint(together) or together[0] != item.name:
             continue
-        span = snippet.locate(item.name_extent.line, item.name_extent.column)
+        span = snippet.at(item.name_extent.start)
         message = f"no code uses the shared {item.kind} {item.name}"
         findings.warning("AOS133", message, span, "Leave it out, or use it")

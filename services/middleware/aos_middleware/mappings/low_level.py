@@ -38,7 +38,7 @@ def _defaults(environment: Environment, compounds: Mapping[str, CompoundType]) -
         for mention in cpp.mentions:
             value = mention.assigned
             if mention.path[0] == "state" and mention.access is Access.WRITE and value is not None:
-                yield ".".join(mention.path[1:]), cpp.code[value.start : value.end].strip()
+                yield ".".join(mention.path[1:]), cpp.text(value).strip()
 
 
 def _field_defaults(

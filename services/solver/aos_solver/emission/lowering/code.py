@@ -21,7 +21,6 @@ from aos_language.cpp.snippets import (
     read_cpp_expression,
     strip_comments,
 )
-from aos_language.cpp.tokens import line_and_column
 from aos_language.document_code import snippets_of
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
@@ -141,7 +140,7 @@ class Pieces:
         """Reports AOS108 and AOS124 for what could leave its function, and what cannot be replayed."""
         for fault in cpp.faults:
             if fault.kind is not FaultKind.SYNTAX:
-                span = snippet.locate(fault.extent.line, fault.extent.column)
+                span = snippet.at(fault.extent.start)
                 self._findings.error("AOS108", fault.message, span)
         code = blanked(strip_comments(cpp.code), cpp.literals)
         self.identifiers.update(re.findall(r"[A-Za-z_]\w*", code))
@@ -152,7 +151,7 @@ class Pieces:
         for name in unrepeatable_names(frozenset(named - own), code):
             at = re.search(rf"\b{re.escape(name)}\b", code)
             start = at.start() if at is not None else 0
-            span = snippet.locate(*line_and_column(code, start))
+            span = snippet.at(start)
             message = f"`{name}` makes a step that cannot be repeated exactly"
             self._findings.error("AOS124", message, span, instead_of_unrepeatable(name))
 

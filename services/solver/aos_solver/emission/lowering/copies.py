@@ -166,7 +166,7 @@ def _bound(cpp: Cpp, names: _Names) -> Iterator[Extent]:
 
 def _views_in(cpp: Cpp, value: Extent, names: _Names) -> Iterator[Extent]:
     """Yields the parts of an expression that may still be looked at when it has been evaluated."""
-    if "views" in cpp.code[value.start : value.end]:
+    if "views" in cpp.text(value):
         yield value
     for call in cpp.calls:
         if _covers(value, call.extent) and not _gives_value(call, names):

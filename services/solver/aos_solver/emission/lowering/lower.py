@@ -196,7 +196,7 @@ class _Lowering:
         if late:
             self._pieces.check(snippet, self._shared.cpp)
             for misuse in self._shared.misuses:
-                span = snippet.locate(misuse.extent.line, misuse.extent.column)
+                span = snippet.at(misuse.extent.start)
                 self._findings.error("AOS145", misuse.message, span, misuse.hint)
         return self._pieces.declarations(snippet, self._shared, self._code.outside, late=late)
 

@@ -50,7 +50,7 @@ def _shared_names(environment: Environment) -> Iterator[tuple[str, Span]]:
         shared = shared_code_of(environment)
         for item in (*shared.names, *shared.functions):
             if item.name:
-                yield item.name, snippet.locate(item.name_extent.line, item.name_extent.column)
+                yield item.name, snippet.at(item.name_extent.start)
 
 
 def _type_names(environment: Environment) -> Iterator[tuple[str, Span]]:

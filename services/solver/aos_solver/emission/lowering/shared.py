@@ -19,7 +19,7 @@ def looked_through(cpp: Cpp, shared: SharedCode) -> str:
             if call.name == (function.name,) and function.name not in own
         ]
         for index, argument in enumerate(call.arguments if functions else ()):
-            state = cpp.code[argument.start : argument.end]
+            state = cpp.text(argument)
             read = [
                 _members(function, index, shared) for function in functions if function.name in shared.reading
             ]

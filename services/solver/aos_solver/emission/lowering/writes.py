@@ -217,7 +217,7 @@ def _referred_to(cpp: Cpp, values: frozenset[str]) -> Iterator[range]:
     types = values.union(enums)
     names = set()
     for declaration in cpp.declarations:
-        code = cpp.code[declaration.initial.start : declaration.initial.end] if declaration.initial else ""
+        code = cpp.text(declaration.initial) if declaration.initial else ""
         is_lambda = code.startswith("[") and _GIVES_REFERENCE.search(code) is not None
         if not _ONLY_READS.match(declaration.type) and (may_refer(declaration.type, types) or is_lambda):
             names.add(declaration.name)
@@ -267,7 +267,7 @@ def _changed_by_lambdas(cpp: Cpp, passed_on: list[range]) -> dict[int, set[str]]
 
 def _parameters(cpp: Cpp, body: Extent) -> list[str]:
     """The names of a lambda's parameters; none where another lambda within has parameters, too."""
-    text = cpp.code[body.start : body.end]
+    text = cpp.text(body)
     if len(LAMBDA.findall(text)) != 1:
         return []
     return [

@@ -146,7 +146,7 @@ def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
         return re.search(r"\]\s*\([^()]*$", before) is not None
     initial = declaration.initial
     own = {each.name for each in cpp.declarations if not each.type.endswith(("&", "*", "auto"))}
-    return initial is not None and cpp.code[initial.start : initial.end] not in own
+    return initial is not None and cpp.text(initial) not in own
 
 
 def _sees_changes(cpp: Cpp, declaration: Declaration) -> bool:
@@ -216,7 +216,7 @@ def _is_constant(text: str, values: frozenset[str]) -> bool:
 def _is_constant_table(cpp: Cpp, declaration: Declaration, values: frozenset[str], *, is_const: bool) -> bool:
     initial = declaration.initial
     assert initial is not None
-    if not _is_constant(cpp.code[initial.start : initial.end], values):
+    if not _is_constant(cpp.text(initial), values):
         return False
     if cpp.code[initial.end :].lstrip()[:1] == ",":
         return False  # Another variable is declared beside it.
@@ -226,7 +226,7 @@ def _is_constant_table(cpp: Cpp, declaration: Declaration, values: frozenset[str
     if re.search(rf"\[[^][]*\b{name}\b[^][]*\]\s*[({{]", cpp.code):
         return False  # A lambda captures it, which it cannot once it is static.
     drawn_from = [call.arguments[-1] for call in cpp.calls if _is_draw(call)]
-    weights = {weights.start for weights in drawn_from if cpp.code[weights.start : weights.end] == name}
+    weights = {weights.start for weights in drawn_from if cpp.text(weights) == name}
     return is_const or all(
         mention.access is Access.READ
         and (len(mention.path) > 1 or mention.method in _READING_METHODS or mention.extent.start in weights)

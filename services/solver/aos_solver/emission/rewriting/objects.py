@@ -83,7 +83,7 @@ def _names_its_copy(cpp: Cpp, declaration: Declaration) -> bool:
     initial, after = declaration.initial, cpp.code[declaration.extent.end :].lstrip()
     if initial is None or after.startswith("["):
         return not after.startswith(":")  # Else it is of a loop.
-    return cpp.code[initial.start : initial.end].strip() in _NO_OBJECT
+    return cpp.text(initial).strip() in _NO_OBJECT
 
 
 def _copy_set_from(cpp: Cpp, declaration: Declaration, type_name: str) -> str:

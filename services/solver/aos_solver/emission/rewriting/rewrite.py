@@ -12,6 +12,7 @@ from aos_language.cpp.shared import SharedFunction
 from aos_language.cpp.snippets import Call, Cpp, Extent, strip_comments
 from aos_language.cpp.values import values_meant
 from aos_language.observed import reports_in
+from aos_protocol.documents import line_and_column
 from aos_solver.emission.program import Edit
 from aos_solver.emission.rewriting.captures import capture_edits
 from aos_solver.emission.rewriting.containers import container_edits
@@ -91,7 +92,7 @@ def rewrite(
     unnamed += [*reference_edits(cpp), *capture_edits(cpp, rewriting.drawing), *index_edits(cpp)]
     edits += [(place.start, "model::") for place in values_meant(cpp, rewriting.responses)]
     for start, end, text in unnamed:
-        edits.append((Extent.of(cpp.code, start, end) if end > start else start, text))
+        edits.append((Extent(start, end) if end > start else start, text))
     edits += _of_definitions(cpp, functions)
     edits += [
         (found.end(), " aos::let_paths_end();") for found in _CATCH_ALL.finditer(strip_comments(cpp.code))
@@ -151,12 +152,12 @@ def _of_mentions(
         if mention.root.start in renamed:
             continue
         if scope := re.compile(r"AOSUtils\s*::").match(cpp.code, mention.root.start):
-            yield Extent.of(cpp.code, scope.end() - 2, scope.end()), "."
+            yield Extent(scope.end() - 2, scope.end()), "."
         if mention.path[0] not in STATES or len(mention.path) < 2:
             continue
         after_root = mention.root.end
         if arrow := re.compile(r"\s*->").match(cpp.code, after_root):
-            yield Extent.of(cpp.code, arrow.end() - 2, arrow.end()), "."
+            yield Extent(arrow.end() - 2, arrow.end()), "."
         name = mention.path[1]
         if name.removesuffix("Objects") in rewriting.object_types and name.endswith("Objects"):
             pattern = re.compile(rf"\s*(?:\.|->)\s*{name}\b(?!\s*\()")
@@ -186,7 +187,7 @@ def _of_call(call: Call, code: str, rewriting: Rewriting) -> Iterator[tuple[Exte
     if len(call.arguments) != 2:
         return
     first, second = call.arguments
-    name = Extent.of(code, call.function.end - len("SampleDiscrete"), call.function.end)
+    name = Extent(call.function.end - len("SampleDiscrete"), call.function.end)
     over = code[first.start : first.end].strip()
     values = rewriting.enums.get(over)
     if values is not None:
@@ -195,7 +196,7 @@ def _of_call(call: Call, code: str, rewriting: Rewriting) -> Iterator[tuple[Exte
     elif over in rewriting.enums:
         bracket = strip_comments(code).index("(", call.function.end)
         yield name.start, "template "
-        yield Extent.of(code, bracket, bracket + 1), "<"
+        yield Extent(bracket, bracket + 1), "<"
         yield _comma(code, first, second), ">("
 
 
@@ -206,10 +207,10 @@ def _comma(code: str, first: Extent, second: Extent) -> Extent:
     end = start + 1
     while code[end] in " \t":
         end += 1
-    return Extent.of(code, start, end)
+    return Extent(start, end)
 
 
 def _placed(edits: Iterable[tuple[Extent | int, str]], code: str) -> Iterator[Edit]:
     for at, text in edits:
-        extent = Extent.of(code, at, at) if isinstance(at, int) else at
-        yield Edit(extent.line, extent.column, extent.end - extent.start, len(text))
+        extent = Extent(at, at) if isinstance(at, int) else at
+        yield Edit(*line_and_column(code, extent.start), extent.end - extent.start, len(text))
