@@ -15,8 +15,7 @@ from aos_protocol.errors import EngineDefectError, ModelError
 from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
-from aos_solver.child.process.engine_child import EngineChild, EngineStart
-from aos_solver.child.process.printed import PRINT_LIMIT_BYTES
+from aos_solver.child.process.engine_child import PRINT_LIMIT_BYTES, EngineChild, EngineStart
 from aos_solver.mission.models.model_shelf import ModelShelf
 from aos_solver.mission.models.takeover import RunningModel
 

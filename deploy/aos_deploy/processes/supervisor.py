@@ -38,8 +38,7 @@ from aos_deploy.processes.passes import Outsider, Passes
 from aos_deploy.processes.program import Program
 from aos_deploy.processes.ready import Before, before_start, check_port_is_free, until_seen_ready
 from aos_deploy.processes.remote import is_lost, was_frozen
-from aos_deploy.processes.returns import Returns
-from aos_deploy.processes.silences import Silences
+from aos_deploy.processes.silences import Returns, Silences
 from aos_deploy.processes.start import ROUTER_MODULE, start_process
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.summary import ProcessEnd

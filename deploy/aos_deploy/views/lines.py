@@ -3,10 +3,10 @@
 import math
 import sys
 import time
-from typing import Self
+from collections.abc import Mapping
+from typing import Any, Self
 
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
-from aos_deploy.views.observations import observation_text
 from aos_deploy.views.values import Digits, by_worth
 from aos_protocol import messages
 from aos_protocol.chances import chance_text
@@ -206,3 +206,16 @@ def changes_text(report: messages.BundleReport) -> str:
     changes = {"added": report.added, "changed": report.changed, "removed": report.removed}
     new = [f"{verb} {', '.join(names)}" for verb, names in changes.items() if names]
     return "; ".join(new) or "nothing new"
+
+
+def observation_text(response: str, numbers: Mapping[str, Any]) -> str:
+    """`scanned (beams = 1.2 3.4, tilt = 0.12)`; a number that is missing in an array is a dash, an empty
+    text `""`."""
+    response = response or '""'
+    shown = ", ".join(f"{name} = {_numbers(value)}" for name, value in numbers.items())
+    return f"{response} ({shown})" if shown else response
+
+
+def _numbers(value: Any) -> str:
+    values = value if isinstance(value, list | tuple) else [value]
+    return " ".join("-" if element is None else f"{element:.4g}" for element in values)

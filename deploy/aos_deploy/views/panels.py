@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from rich.table import Table
 from rich.text import Text
 
-from aos_deploy.views.observations import observation_text
+from aos_deploy.views.lines import observation_text
 from aos_deploy.views.values import Digits, by_worth, proven_texts
 from aos_protocol.chances import chance_text
 from aos_protocol.messages import BeliefSummary, DecisionRecord, Marginal, SkillProgress

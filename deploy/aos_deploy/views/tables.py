@@ -9,7 +9,7 @@ from rich.text import Text
 
 from aos_deploy.printing import count
 from aos_deploy.terminal import console, print_table
-from aos_deploy.views.observations import observation_text
+from aos_deploy.views.lines import observation_text
 from aos_deploy.views.values import Digits, by_worth, proven_texts
 from aos_protocol.messages import ActionValue
 from aos_solver.mission.rules.endings import Ending

@@ -12,10 +12,9 @@ from msgspec.structs import replace
 from aos_deploy.bundles.files import files_of_bundle
 from aos_deploy.deployment.reading import Deployment
 from aos_lab.trials.model_player import ModelMissions, ModelPlayer
+from aos_lab.trials.players import ScriptPlayer, SystemPlayer
 from aos_lab.trials.ray_cluster import RayPlayer
-from aos_lab.trials.script_player import ScriptPlayer
 from aos_lab.trials.setting import Setting, deployment_of, world_deployment_of
-from aos_lab.trials.system_player import SystemPlayer
 from aos_lab.trials.trial import KeptTrial, Trial, kept_trials
 from aos_protocol import __version__
 from aos_protocol.documents import MissionValue

@@ -9,7 +9,5 @@ Source: the paper, sections 3.2.1 and 3.2.2; the AOS documentation manual, versi
 
 from aos_protocol.documents.code import *
 from aos_protocol.documents.environment import *
-from aos_protocol.documents.low_level import *
 from aos_protocol.documents.mapping import *
 from aos_protocol.documents.project import *
-from aos_protocol.documents.skill_model import *

@@ -3,11 +3,61 @@
 import msgspec
 
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents.code import Snippet
+from aos_protocol.documents.code import Assignment, Snippet
 from aos_protocol.documents.environment import Environment
-from aos_protocol.documents.low_level import LowLevelDocument
 from aos_protocol.documents.mapping import AbstractionMapping
-from aos_protocol.documents.skill_model import SkillModel
+
+
+class Parameter(msgspec.Struct, frozen=True):
+    """A skill parameter."""
+
+    name: str
+    type: str
+    span: Span
+    type_span: Span | None = None
+
+
+class SkillModel(msgspec.Struct, frozen=True):
+    """A skill document (SD): how the skill changes the world, what it costs, what it reports."""
+
+    project: str
+    name: str
+    span: Span
+    parameters: tuple[Parameter, ...] = ()
+    possible_parameters: tuple[Assignment, ...] = ()
+    precondition: tuple[Assignment, ...] = ()
+    rollout_policy: tuple[Assignment, ...] = ()
+    violation_penalty: float = 0.0
+    execution_time: tuple[Assignment, ...] = ()
+    dynamic_model: tuple[Assignment, ...] = ()
+    state_given_observation: tuple[Assignment, ...] = ()
+
+
+class LowLevelType(msgspec.Struct, frozen=True):
+    """A Python-side structure for `anyValue` parameters."""
+
+    name: str
+    fields: tuple[Parameter, ...]
+    span: Span
+
+
+class LowLevelConstant(msgspec.Struct, frozen=True):
+    """A Python-side value that an `anyValue` field may hold; in model code the name stands for `true`."""
+
+    name: str
+    type: str
+    code: Snippet
+    span: Span
+
+
+class LowLevelDocument(msgspec.Struct, frozen=True):
+    """The environment's Python side (AOS 1.x `EnvironmentGlue`)."""
+
+    project: str
+    span: Span
+    types: tuple[LowLevelType, ...] = ()
+    constants: tuple[LowLevelConstant, ...] = ()
+
 
 Content = Environment | SkillModel | AbstractionMapping | LowLevelDocument
 """The content of one document."""

@@ -12,11 +12,10 @@ from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import Cancel, Cancelled, SkillCall, SkillProgress, SkillResult
 from aos_protocol.spelling import error_text, sendable_text
 from aos_runtime.adapters.adapter import Adapter, Answer, Call, MovesOn
-from aos_runtime.adapters.blocking import ends_if_blocked
 from aos_runtime.adapters.expressions import translated
 from aos_runtime.adapters.outbox import Outbox
 from aos_runtime.adapters.pauses import Pauses
-from aos_runtime.adapters.results import result_of
+from aos_runtime.adapters.results import ends_if_blocked, result_of
 from aos_runtime.adapters.running_call import CallLedger, RunningCall, last_progress
 from aos_runtime.adapters.settings import AdapterSettings, Binding
 from aos_runtime.bus.subscription import Subscription

@@ -5,11 +5,9 @@ import keyword
 from collections.abc import Iterable, Iterator
 
 from aos_language.check.mappings import python_names
-from aos_language.check.mappings.input_fields import check_input_fields
 from aos_language.check.mappings.python_parsed import parsed
-from aos_language.check.mappings.result_order import check_result_order
+from aos_language.check.mappings.result_uses import check_input_fields, check_result_order, check_taken_away
 from aos_language.check.mappings.rule_gaps import check_rule_gaps
-from aos_language.check.mappings.taken_away import check_taken_away
 from aos_language.check.mappings.value_uses import check_value_uses
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings

@@ -8,7 +8,7 @@ import asyncio
 import signal
 import sys
 from collections.abc import Callable
-from typing import Literal, Self, TypeVar
+from typing import BinaryIO, Literal, Self, TypeVar
 
 import msgspec
 from msgspec.structs import replace
@@ -21,7 +21,6 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.models import EngineDescription, EngineFault, Progress
 from aos_solver.child.lines.belief_draws import draws_of
 from aos_solver.child.process.confinement import confinement_of
-from aos_solver.child.process.printed import pass_on
 from aos_solver.child.process.shared_memory import SharedMemory, new_blame_page, running_piece
 
 ImpossiblePolicy = Literal["hold", "widen", "reset"]
@@ -286,3 +285,22 @@ def _status_text(returncode: int) -> str:
     if -returncode in (signal.SIGFPE, signal.SIGILL, signal.SIGTRAP):
         return f"signal {-returncode}, as for an integer that is divided by zero"
     return f"signal {-returncode}" if returncode < 0 else f"exit status {returncode}"
+
+
+PRINT_LIMIT_BYTES = 1_000_000
+"""An engine child may print this many bytes in its life."""
+
+_CHUNK_BYTES = 65536
+
+
+async def pass_on(printed: asyncio.StreamReader, out: BinaryIO) -> None:
+    """Copies until the end. Past the limit all is read and dropped, so that the model never waits."""
+    remaining_bytes = PRINT_LIMIT_BYTES
+    while chunk := await printed.read(_CHUNK_BYTES):
+        if remaining_bytes <= 0:
+            continue
+        out.write(chunk[:remaining_bytes])
+        remaining_bytes -= len(chunk)
+        if remaining_bytes <= 0:
+            out.write(b"\naos: model code printed more than 1 MB; the rest is left out\n")
+        out.flush()

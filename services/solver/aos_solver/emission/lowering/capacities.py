@@ -14,10 +14,12 @@ from aos_solver.emission.lowering.vector_aliases import (
     GROWING,
     SIZING,
     aliases_of,
+    bracketed_parts,
     fills_what_is_unclear,
     in_place_of_each_other,
+    made_of,
+    whole_number,
 )
-from aos_solver.emission.lowering.written_lists import bracketed_parts, made_of, whole_number
 
 GROWING_CAPACITY = 64
 """A vector that grows by code gets this capacity, if nothing in the code tells more."""

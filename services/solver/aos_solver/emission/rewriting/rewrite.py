@@ -14,11 +14,9 @@ from aos_language.cpp.values import values_meant
 from aos_language.observed import reports_in
 from aos_protocol.documents import line_and_column
 from aos_solver.emission.program import Edit
-from aos_solver.emission.rewriting.captures import capture_edits
 from aos_solver.emission.rewriting.containers import container_edits
-from aos_solver.emission.rewriting.indexes import index_edits
 from aos_solver.emission.rewriting.objects import object_edits
-from aos_solver.emission.rewriting.references import reference_edits
+from aos_solver.emission.rewriting.references import capture_edits, index_edits, reference_edits
 
 _CATCH_ALL = re.compile(r"\bcatch\s*\(\s*\.\.\.\s*\)\s*\{")
 _SCOPE = re.compile(r"AOS(?:Utils)?")

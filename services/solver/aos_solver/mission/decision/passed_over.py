@@ -1,8 +1,12 @@
-"""Skills that nobody can run now: they are waited for, and then the planner searches without them."""
+"""Skills that nobody can run now: they are waited for, and then the planner searches without them.
+
+Loops of document code that no draw can end are told here as well.
+"""
 
 from collections import Counter
 from collections.abc import Set
 
+from aos_solver.child.engine import Engine
 from aos_solver.mission.ports import Available
 
 _DECISIONS = 3
@@ -86,3 +90,20 @@ class PassedOver:
         """Those of the skills that are away and were there before."""
         away = skills & self._around.unavailable.keys()
         return {skill for skill in away if self._around.announced.get(skill)}
+
+
+class EndlessLoops:
+    """Tells of each loop of each model once."""
+
+    def __init__(self) -> None:
+        self._told: set[tuple[str, int]] = set()
+
+    async def newly_found(self, engine: Engine) -> list[str]:
+        """Returns a text for each loop without an end that steps have come to since the last call."""
+        texts: list[str] = []
+        for loop, place in await engine.endless_loops():
+            key = engine.model_digest, loop.loop
+            if key not in self._told:
+                self._told.add(key)
+                texts.append(f"{place}: {loop.text}, which counts as a failure")
+        return texts

@@ -1,25 +1,35 @@
-"""Missions of a script: its actions one after the other in a simulated world, without services.
+"""Missions of a whole system, as `aos-up` runs them, and of a script: its actions one after the other in a
+simulated world, without services.
 
-The world's physics play the skills. The documents' mappings, in their sandboxed workers, say what came back.
-Topics are read at the end of each skill.
+The world's physics play the skills of a script. The documents' mappings, in their sandboxed workers, say what
+came back. Topics are read at the end of each skill.
 """
 
 from __future__ import annotations
 
+import asyncio
 import json
+import shutil
 import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from msgspec.structs import replace
+
 from aos_deploy.deployment.adapter_kinds import check_installed
 from aos_deploy.deployment.reading import Deployment
+from aos_deploy.missions.mission_run import MissionRun
+from aos_deploy.processes.needed_here import check_needed_here
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.summary import Summary
 from aos_lab.trials.model_player import ModelMissions, ModelPlayer
-from aos_lab.trials.trial import Trial
+from aos_lab.trials.trial import Trial, truth_lines
 from aos_middleware.mappings.revisions import emit_project
 from aos_middleware.workers.evaluator import EvaluationLimits, Evaluator
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DeployError
+from aos_runtime.clock import SystemClock
 from aos_solver.child.answers.models import GroundedAction
 from aos_solver.child.engine import Engine
 
@@ -102,3 +112,49 @@ class ScriptPlayer:
         world.stop()
         await evaluator.take(list(world.sensors().items()))
         return (await evaluator.finish(answer)).response or "", fields
+
+
+MISSION_S = 1800.0
+"""A mission that takes longer is ended, and counts as broken."""
+
+
+class SystemPlayer:
+    """Plays missions of a deployment by its adapters; their run directories go below `runs`."""
+
+    def __init__(self, deployment: Deployment, runs: Path) -> None:
+        check_needed_here(deployment)
+        self.deployment = deployment
+        self._runs = runs
+
+    async def close(self) -> None:
+        """Nothing is left of a mission."""
+
+    async def play(self, seed: int) -> Trial:
+        """One mission; one that broke is a trial with its fault."""
+        runs = self._runs / f"seed-{seed}"
+        shutil.rmtree(runs, ignore_errors=True)
+        file = self.deployment.file
+        file = replace(file, solver=replace(file.solver, seed=seed))
+        deployment = replace(self.deployment, file=file, runs=runs)
+        mission = MissionRun(deployment, lambda event: None, SystemClock())
+        try:
+            summary = await asyncio.wait_for(mission.run(), MISSION_S)
+            run = RunDirectory.latest(runs)
+        except (AosError, TimeoutError) as error:
+            fault = str(mission.error or error) or f"it did not end within {MISSION_S:g} s"
+            return Trial(seed=seed, ending="fault", goal=False, fault=fault)
+        return _trial(seed, summary, run.path)
+
+
+def _trial(seed: int, summary: Summary, run: Path) -> Trial:
+    return Trial(
+        seed=seed,
+        ending=summary.ending,
+        goal=summary.ending == "goal",
+        actions=summary.actions,
+        responses=summary.responses,
+        states=tuple(truth_lines(run)),
+        seconds=summary.duration_s,
+        fault=summary.remark if summary.ending in ("fault", "not_started", "cancelled") else "",
+        mission_parameters=summary.mission_parameters,
+    )
