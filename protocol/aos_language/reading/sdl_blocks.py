@@ -5,7 +5,6 @@ import re
 import msgspec
 from msgspec.structs import replace
 
-from aos_language.findings import Findings
 from aos_language.reading.code import expression
 from aos_language.reading.document import check_name, enum_type, normal_type
 from aos_language.reading.glued_else import with_else_apart
@@ -37,7 +36,7 @@ class _Open(msgspec.Struct):
         return Assignment(self.span, self.name, self.temporary, *loops, self.code)
 
 
-def read_block(section: Section | None, findings: Findings) -> tuple[Assignment, ...]:
+def read_block(section: Section | None) -> tuple[Assignment, ...]:
     """The assignments of a section: its body is one, and each `assignment:` opens another."""
     if section is None:
         return ()
@@ -53,56 +52,58 @@ def read_block(section: Section | None, findings: Findings) -> tuple[Assignment,
                 continue
             found[-1].name = ""
         if part.word in _LOOP_PARTS:
-            _add_to_loop(part, loops, findings)
+            _add_to_loop(part, loops)
         elif part.word in ("loop_previous", "loop_next"):
             loops = found[-1].over_previous if part.word == "loop_previous" else found[-1].over_next
-            loop = _loop(part, findings)
+            loop = _loop(part)
             loops.extend([loop] if loop is not None else [])
         elif part.word == "temporary_variable":
-            found[-1].temporary = _temporary(part, findings)
+            found[-1].temporary = _temporary(part)
         else:
             found[-1].code = part.code()
     closed = (assignment.closed() for assignment in found)
-    return tuple(with_else_apart(assignment, findings) for assignment in closed if assignment is not None)
+    return tuple(
+        with_else_apart(assignment, section.findings) for assignment in closed if assignment is not None
+    )
 
 
-def _loop(part: Part, findings: Findings) -> Iteration | None:
+def _loop(part: Part) -> Iteration | None:
     match = _TYPE_AND_NAME.fullmatch(part.value.text)
     if match is None:
         message = f"`{part.word}:` needs a compound type and a name for each variable of it"
-        findings.error("AOS104", message, part.value.span if part.value.text else part.span)
+        part.findings.error("AOS104", message, part.place)
         return None
-    check_name(Text(match.group(2), part.value.after(match.start(2)).span), "a loop's item", findings)
+    check_name(Text(match.group(2), part.value.after(match.start(2)).span), "a loop's item", part.findings)
     return Iteration(match.group(1), match.group(2), part.value.span)
 
 
-def _add_to_loop(part: Part, loops: list[Iteration] | None, findings: Findings) -> None:
+def _add_to_loop(part: Part, loops: list[Iteration] | None) -> None:
     code = part.code()
     if not loops:
-        findings.error("AOS104", f"this `{part.word}:` belongs to no loop", part.span)
+        part.error("AOS104", f"this `{part.word}:` belongs to no loop")
     elif part.word == "loop_body":
         loops[-1] = replace(loops[-1], body=code)
     elif code is not None:
         loops[-1] = replace(loops[-1], condition=expression(code, drop_semicolon=True))
 
 
-def _temporary(part: Part, findings: Findings) -> TemporaryVariable | None:
+def _temporary(part: Part) -> TemporaryVariable | None:
     """`int n`, or `enum Ending { Good, Bad } ending` as in C++."""
     value = part.value
     if match := _TEMPORARY_ENUM.fullmatch(value.text):
         enum_name, name = (Text(match.group(i), value.after(match.start(i)).span) for i in (1, 3))
-        check_name(enum_name, "an enum", findings)
-        check_name(name, "a temporary variable", findings)
-        listed = enum_values(Text(match.group(2), value.after(match.start(2)).span), findings)
-        values = enum_type(enum_name, listed, findings).values
+        check_name(enum_name, "an enum", part.findings)
+        check_name(name, "a temporary variable", part.findings)
+        listed = enum_values(Text(match.group(2), value.after(match.start(2)).span), part.findings)
+        values = enum_type(enum_name, listed, part.findings).values
         return TemporaryVariable(name.text, "enum", name.span, enum_name.text, values)
     match = _TYPE_AND_NAME.fullmatch(value.text)
     if match is None:
         hint = "Write `int n`, or `enum Ending { Good, Bad } ending`"
-        span = value.span if value.text else part.span
-        findings.error("AOS104", f"`{part.word}:` needs a type and a name", span, hint)
+        span = part.place
+        part.findings.error("AOS104", f"`{part.word}:` needs a type and a name", span, hint)
         return None
     name = Text(match.group(2), value.after(match.start(2)).span)
-    check_name(name, "a temporary variable", findings)
-    kind = normal_type(Text(match.group(1), value.span), findings)
+    check_name(name, "a temporary variable", part.findings)
+    kind = normal_type(Text(match.group(1), value.span), part.findings)
     return TemporaryVariable(name.text, kind, name.span)

@@ -5,7 +5,6 @@ from collections.abc import Collection
 
 import msgspec
 
-from aos_language.findings import Findings
 from aos_language.reading.document import check_name, normal_type
 from aos_language.reading.sdl_text import Part
 from aos_language.reading.source import Text
@@ -29,9 +28,7 @@ class Declaration(msgspec.Struct, frozen=True):
     rest: Text
 
 
-def read_declaration(
-    part: Part, what: str, findings: Findings, types: Collection[str] = ()
-) -> Declaration | None:
+def read_declaration(part: Part, what: str, types: Collection[str] = ()) -> Declaration | None:
     """The declaration in a part's value; None, with an error, where it is none.
 
     Where the name stands before one of these types, or a basic one, it is read as meant. A name alone is of
@@ -44,47 +41,47 @@ def read_declaration(
         text = part.value
         is_name = _NAME.fullmatch(text.text) is not None and text.text not in known
         hint = f"Write `int {text.text}`, or another type before the name" if is_name else ""
-        findings.error("AOS104", message, text.span if text.text else part.span, hint)
+        part.findings.error("AOS104", message, text.span if text.text else part.span, hint)
         return Declaration("auto", text, text, text.after(len(text.text))) if is_name else None
     type_text = Text(match.group(1), part.value.after(0).span)
     name = Text(match.group(3), part.value.after(match.start(3)).span)
     if name.text in known and type_text.text not in known and (bare := _NAME.match(type_text.text)):
         meant = f"{name.text} {bare[0]}{type_text.text[bare.end() :].lstrip()}"
         mend = Mend(type_text.span, match.end(3), meant)
-        findings.error("AOS104", f"the type comes first: `{meant}`", type_text.span, mend=mend)
+        part.findings.error("AOS104", f"the type comes first: `{meant}`", type_text.span, mend=mend)
         array_mark = type_text.after(bare.end()).strip()
         rest = array_mark if array_mark.text else part.value.after(match.end()).strip()
         return Declaration(name.text, name, Text(bare[0], type_text.span), rest)
-    check_name(name, what, findings)
-    kind = normal_type(type_text, findings)
+    check_name(name, what, part.findings)
+    kind = normal_type(type_text, part.findings)
     return Declaration(kind, type_text, name, part.value.after(match.end()).strip())
 
 
-def read_number(part: Part, findings: Findings) -> float | None:
+def read_number(part: Part) -> float | None:
     """The number in a part's value; None, with an error, where it is none."""
     text = part.value.text
     if text.endswith(";"):
         text = text.rstrip("; \t")
         at = part.value.after(len(text)).strip().span
-        findings.warning("AOS127", "a semicolon after a number", at, "It is skipped")
+        part.findings.warning("AOS127", "a semicolon after a number", at, "It is skipped")
     try:
         number = float(text)
     except ValueError:
         number = float("nan")
     if not abs(number) < float("inf"):
-        span = part.value.span if part.value.text else part.span
+        span = part.place
         hint = "A decimal is written with a point" if "," in text else ""
-        findings.error("AOS106", f"`{part.word}:` needs a number, not {part.value.text!r}", span, hint)
+        part.findings.error("AOS106", f"`{part.word}:` needs a number, not {part.value.text!r}", span, hint)
         return None
     return number
 
 
-def read_truth(part: Part | None, findings: Findings, *, otherwise: bool = False) -> bool:
+def read_truth(part: Part | None, *, otherwise: bool = False) -> bool:
     """true or false in a part's value, `otherwise` where it is neither; false where there is no part."""
     if part is None:
         return False
     truth = _TRUTHS.get(part.value.text.lower())
     if truth is None:
         message = f"`{part.word}:` is true or false, not {part.value.text!r}"
-        findings.error("AOS106", message, part.value.span)
+        part.findings.error("AOS106", message, part.value.span)
     return otherwise if truth is None else truth

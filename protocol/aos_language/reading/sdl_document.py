@@ -29,39 +29,39 @@ def read_sdl(source: Source, findings: Findings) -> Document:
     span = source.span()
     parsed = parse_sdl(source, GRAMMARS[suffix], places_of_words(suffix), findings)
     sections = Sections(parsed, span, findings)
-    project = _project(parsed, sections, findings)
+    project = _project(parsed, sections)
     place = next((given.value.span for given in sections.all("project")), None)
     given = sections.last("version")
     version = read_version(given.value if given is not None else None, findings)
     if kind is DocumentKind.ENVIRONMENT:
-        content = read_environment(sections, project, span, findings)
+        content = read_environment(sections, project, span)
         return Document(kind, project, "environment", span, content, version, place)
     if kind is DocumentKind.LOW_LEVEL:
-        low_level = read_low_level(sections, project, span, findings)
+        low_level = read_low_level(sections, project, span)
         return Document(kind, project, "environment", span, low_level, version, place)
     name = path.stem if check_name(Text(path.stem, span), "a skill", findings) else ""
     if kind is DocumentKind.SKILL:
-        skill = read_skill(sections, project, name, span, findings)
+        skill = read_skill(sections, project, name, span)
         return Document(kind, project, name, span, skill, version, place)
-    mapping = read_mapping(sections, project, name, span, findings)
+    mapping = read_mapping(sections, project, name, span)
     return Document(kind, project, name, span, mapping, version, place)
 
 
-def _project(parsed: list[Section], sections: Sections, findings: Findings) -> str:
+def _project(parsed: list[Section], sections: Sections) -> str:
     given = sections.all("project")
     if not given or not given[0].value.text:
         span = given[0].span if given else sections.span
         hint = "Start it with `project: <name>`"
-        findings.error("AOS105", "this file does not say its project", span, hint)
+        sections.findings.error("AOS105", "this file does not say its project", span, hint)
         return ""
     if parsed[0].word != "project":
-        findings.warning("AOS127", "`project:` should be the first line", given[0].span)
+        sections.findings.warning("AOS127", "`project:` should be the first line", given[0].span)
     first = given[0].value
     for other in given[1:]:
         if other.value.text == first.text:
             hint = "It is skipped; of the sections that repeat, the last counts"
-            findings.warning("AOS125", "`project:` is given again", other.span, hint)
+            sections.findings.warning("AOS125", "`project:` is given again", other.span, hint)
         else:
             message = f"this file is of project {first.text}, not of {other.value.text}"
-            findings.error("AOS113", message, other.value.span)
+            sections.findings.error("AOS113", message, other.value.span)
     return first.text

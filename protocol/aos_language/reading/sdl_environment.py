@@ -21,131 +21,123 @@ _ARRAY_MARK = re.compile(r"\[\s*([A-Za-z_]\w*|)\s*\]\s*")
 _ARRAY_WORDS = {"true": True, "false": False, "": False}
 
 
-def read_environment(
-    sections: Sections, project: str, span: Span, findings: Findings
-) -> documents.Environment:
+def read_environment(sections: Sections, project: str, span: Span) -> documents.Environment:
     """The environment; what cannot be read of it is reported and left out."""
     names = [section.value.text for section in sections.all("define_type")]
-    types = [_type(section, names, findings) for section in sections.all("define_type")]
+    types = [_type(section, names) for section in sections.all("define_type")]
     variables = [
-        _variable(section, names, findings)
+        _variable(section, names)
         for section in sections.of("state_variable", "action_parameter", "mission_parameter")
     ]
     return documents.Environment(
         project=project,
         span=span,
-        horizon=_horizon(sections, findings),
-        discount=_discount(sections, findings),
+        horizon=_horizon(sections),
+        discount=_discount(sections),
         enums=tuple(kind for kind in types if isinstance(kind, documents.EnumType)),
         compounds=tuple(kind for kind in types if isinstance(kind, documents.CompoundType)),
         variables=tuple(variable for variable in variables if variable is not None),
         initial_belief=sections.block("initial_belief"),
-        special_states=tuple(_special_states(sections, findings)),
+        special_states=tuple(_special_states(sections)),
         extrinsic_changes=sections.block("extrinsic_code"),
         state_heuristic=sections.block("heuristic_code"),
         print_state=sections.block("print_code"),
-        is_one_state_model=read_truth(sections.last("one_state_model"), findings),
-        shared_mapping_code=python.code()
-        if (python := sections.last("shared_mapping_code")) is not None
-        else None,
-        monitors=tuple(_monitors(sections, findings)),
-        shared_code=shared.code() if (shared := sections.last("shared_code")) is not None else None,
+        is_one_state_model=read_truth(sections.last("one_state_model")),
+        shared_mapping_code=sections.code("shared_mapping_code"),
+        monitors=tuple(_monitors(sections)),
+        shared_code=sections.code("shared_code"),
     )
 
 
-def _monitors(sections: Sections, findings: Findings) -> Iterator[documents.MonitorModel]:
+def _monitors(sections: Sections) -> Iterator[documents.MonitorModel]:
     """The model of each monitor; an error for one without a name or without code."""
     for section in sections.all("monitor"):
-        name, part = section.value, section.last("code", findings)
-        code = part.code() if part is not None else None
+        name, code = section.value, section.code_of("code")
         if not name.text:
-            findings.error("AOS105", "`monitor:` needs a name", section.span)
+            section.error("AOS105", "`monitor:` needs a name")
         elif code is None:
             hint = "Add `code:` that sets __moduleResponse from `state`"
-            findings.error("AOS105", f"the monitor {name.text} has no model", name.span, hint)
-        elif check_name(name, "a monitor", findings):
+            sections.findings.error("AOS105", f"the monitor {name.text} has no model", name.span, hint)
+        elif check_name(name, "a monitor", sections.findings):
             yield documents.MonitorModel(name.text, name.span, (documents.Assignment(code.span, code=code),))
 
 
-def _horizon(sections: Sections, findings: Findings) -> int:
+def _horizon(sections: Sections) -> int:
     section = sections.last("horizon")
     if section is None:
-        findings.error("AOS105", "the environment lacks `horizon:`", sections.span)
+        sections.findings.error("AOS105", "the environment lacks `horizon:`", sections.span)
         return 1
-    number = read_number(section, findings)
+    number = read_number(section)
     if number is None:
         return 1
     if number != int(number) or not 1 <= number <= documents.MAX_HORIZON:
         message = f"the horizon must be an integer from 1 to {documents.MAX_HORIZON}"
-        findings.error("AOS106", message, section.value.span)
+        sections.findings.error("AOS106", message, section.value.span)
         return 1
     return int(number)
 
 
-def _discount(sections: Sections, findings: Findings) -> float:
+def _discount(sections: Sections) -> float:
     section = sections.last("discount")
-    number = read_number(section, findings) if section is not None else DEFAULT_DISCOUNT
+    number = read_number(section) if section is not None else DEFAULT_DISCOUNT
     if number is None:
         return DEFAULT_DISCOUNT
     if section is not None and not 0.0 < number <= 1.0:
         hint = "It must be above 0 and at most 1"
-        findings.error("AOS106", f"the discount is {number:g}", section.value.span, hint)
+        sections.findings.error("AOS106", f"the discount is {number:g}", section.value.span, hint)
         return DEFAULT_DISCOUNT
     return number
 
 
-def _special_states(sections: Sections, findings: Findings) -> Iterator[documents.SpecialState]:
+def _special_states(sections: Sections) -> Iterator[documents.SpecialState]:
     for section in sections.of("reward_code", "special_state"):
         if section.word == "special_state":
-            special = _form_a(section, findings)
+            special = _form_a(section)
         else:
-            code = read_block(section, findings)
+            code = read_block(section)
             special = documents.SpecialState(section.span, code=code) if code else None
         if special is not None:
             yield special
 
 
-def _form_a(section: Section, findings: Findings) -> documents.SpecialState | None:
-    condition, reward = section.last("state_condition", findings), section.last("reward", findings)
-    is_goal = read_truth(section.last("is_goal_state", findings), findings)
-    is_one_time = read_truth(section.last("is_one_time_reward", findings), findings)
-    failure = section.last("is_failure_state", findings)
-    is_failure = read_truth(failure, findings) if failure is not None else None
-    code = condition.code() if condition is not None else None
+def _form_a(section: Section) -> documents.SpecialState | None:
+    code, reward = section.code_of("state_condition"), section.last("reward")
+    is_goal = read_truth(section.last("is_goal_state"))
+    is_one_time = read_truth(section.last("is_one_time_reward"))
+    failure = section.last("is_failure_state")
+    is_failure = read_truth(failure) if failure is not None else None
     if code is None:
-        findings.error("AOS105", "a special state needs `state_condition:`", section.span)
+        section.error("AOS105", "a special state needs `state_condition:`")
     if reward is None:
-        findings.error("AOS105", "a special state needs `reward:`", section.span)
-    number = read_number(reward, findings) if reward is not None else None
+        section.error("AOS105", "a special state needs `reward:`")
+    number = read_number(reward) if reward is not None else None
     if code is None or number is None:
         return None
     holds = expression(code, drop_semicolon=True)
     return documents.SpecialState(section.span, holds, number, is_goal, is_one_time, is_failure)
 
 
-def _type(
-    section: Section, names: Sequence[str], findings: Findings
-) -> documents.EnumType | documents.CompoundType | None:
+def _type(section: Section, names: Sequence[str]) -> documents.EnumType | documents.CompoundType | None:
     name = section.value
     if not name.text:
-        findings.error("AOS105", "`define_type:` needs a name", section.span)
+        section.error("AOS105", "`define_type:` needs a name")
         return None
-    check_name(name, "a type", findings)
-    members = section.last("enum_members", findings)
-    fields = [_field(part, names, findings) for part in section.all("variable")]
+    check_name(name, "a type", section.findings)
+    members = section.last("enum_members")
+    fields = [_field(part, names) for part in section.all("variable")]
     if members is not None and fields:
         message = f"the type {name.text} is an enum or has variables, not both"
-        findings.error("AOS106", message, members.span)
+        members.error("AOS106", message)
     if members is not None:
-        return enum_type(name, listed_values(members, findings), findings)
+        return enum_type(name, listed_values(members), section.findings)
     if not fields:
         hint = "Add `enum_members:` or `variable:` lines"
-        findings.error("AOS105", f"the type {name.text} is empty", name.span, hint)
+        section.findings.error("AOS105", f"the type {name.text} is empty", name.span, hint)
     return documents.CompoundType(name.text, tuple(field for field in fields if field is not None), name.span)
 
 
-def _field(part: Part, names: Sequence[str], findings: Findings) -> documents.Field | None:
-    declaration = read_declaration(part, "a field", findings, names)
+def _field(part: Part, names: Sequence[str]) -> documents.Field | None:
+    declaration = read_declaration(part, "a field", names)
     if declaration is None:
         return None
     rest, low_level_type = _low_level_type(declaration)
@@ -156,10 +148,10 @@ def _field(part: Part, names: Sequence[str], findings: Findings) -> documents.Fi
         size = re.match(r"\[\s*(\d+)\s*\]", rest.text)
         container = f"array<{kind}, {size[1]}>" if size else f"vector<{kind}>"
         hint = f"Write `variable: {container} {declaration.name.text}`"
-        findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
+        part.findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
         kind, rest = container, rest.after(len(rest.text))
     if rest.text.startswith("="):
-        findings.warning("AOS127", "an equals sign before a default", rest.span, "It is skipped")
+        part.findings.warning("AOS127", "an equals sign before a default", rest.span, "It is skipped")
         rest = rest.after(1).strip()
     default = _without_learning_scale(rest)
     snippet = expression(default.snippet(), drop_semicolon=True) if default.text else None
@@ -182,20 +174,19 @@ def _without_learning_scale(rest: Text) -> Text:
     return Text(match.group(1), rest.span) if match else rest
 
 
-def _variable(section: Section, names: Sequence[str], findings: Findings) -> documents.StateVariable | None:
-    declaration = read_declaration(section, "a variable", findings, names)
+def _variable(section: Section, names: Sequence[str]) -> documents.StateVariable | None:
+    declaration = read_declaration(section, "a variable", names)
     if declaration is None:
         return None
     rest, low_level_type = _low_level_type(declaration)
     mark = _ARRAY_MARK.fullmatch(rest.text)
     if mark is None and rest.text.lower() not in _ARRAY_WORDS:
         hint = "After the name stands `[]` or `[ENUM]` for an array, or nothing; values go into `code:`"
-        findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
-    code, value = section.last("code", findings), section.last("default_value", findings)
-    default_value = value.code() if value is not None else None
+        section.findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
+    code, default_value = section.last("code"), section.code_of("default_value")
     if code is not None and default_value is not None:
-        findings.error("AOS106", "a variable has `default_value:` or `code:`, not both", code.span)
-    keys = section.last("key_types", findings)
+        code.error("AOS106", "a variable has `default_value:` or `code:`, not both")
+    keys = section.last("key_types")
     kind, is_array, index_enum = array_type(declaration.type)
     index_span = declaration.type_text.after(declaration.type_text.text.find("[") + 1).strip().span
     if mark is not None:
@@ -208,7 +199,7 @@ def _variable(section: Section, names: Sequence[str], findings: Findings) -> doc
         is_parameter_value=section.word == "action_parameter",
         default_value=expression(default_value, drop_semicolon=True) if default_value else None,
         default_code=code.code() if code is not None else None,
-        key_types=_key_types(keys.value, findings) if keys is not None else (),
+        key_types=_key_types(keys.value, section.findings) if keys is not None else (),
         low_level_type=low_level_type,
         type_span=declaration.type_text.span,
         index_enum=index_enum,

@@ -5,7 +5,7 @@ from aos_language.reading.sdl_blocks import read_block
 from aos_language.reading.sdl_text import Section, last_of
 from aos_language.reading.sdl_words import GRAMMARS
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import Assignment
+from aos_protocol.documents import Assignment, Snippet
 
 DEFAULT_DISCOUNT = 0.9999
 
@@ -33,7 +33,7 @@ class Sections:
     def __init__(self, sections: list[Section], span: Span, findings: Findings) -> None:
         self.span = span
         self._sections = sections
-        self._findings = findings
+        self.findings = findings
 
     def of(self, *words: str) -> list[Section]:
         """The sections of any of these words, in order."""
@@ -45,8 +45,13 @@ class Sections:
     def last(self, word: str) -> Section | None:
         """The last section of that word, as `last_of` has it; a second `project:` begins a document."""
         projects = [section.span.line for section in self.of("project")]
-        return last_of(self.all(word), self._findings, projects)
+        return last_of(self.all(word), projects)
 
     def block(self, word: str) -> tuple[Assignment, ...]:
         """The model code of a section."""
-        return read_block(self.last(word), self._findings)
+        return read_block(self.last(word))
+
+    def code(self, word: str) -> Snippet | None:
+        """The code of a section that is one snippet."""
+        section = self.last(word)
+        return section.code() if section is not None else None

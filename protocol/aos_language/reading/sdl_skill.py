@@ -1,6 +1,5 @@
 """The skill document (`.sd`)."""
 
-from aos_language.findings import Findings
 from aos_language.reading.document import check_penalty
 from aos_language.reading.sdl_declaration import read_declaration, read_number
 from aos_language.reading.sdl_sections import Sections
@@ -8,24 +7,24 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Parameter, SkillModel
 
 
-def read_skill(sections: Sections, project: str, name: str, span: Span, findings: Findings) -> SkillModel:
+def read_skill(sections: Sections, project: str, name: str, span: Span) -> SkillModel:
     """The skill's model; what cannot be read of it is reported and left out."""
     parameters = []
     for section in sections.all("parameter"):
-        declaration = read_declaration(section, "a parameter", findings)
+        declaration = read_declaration(section, "a parameter")
         if declaration is None:
             continue
         if declaration.rest.text:
             message = f"unexpected {declaration.rest.text!r} after the parameter"
-            findings.error("AOS104", message, declaration.rest.span)
+            sections.findings.error("AOS104", message, declaration.rest.span)
         name_text, kind = declaration.name, declaration.type
         parameters.append(Parameter(name_text.text, kind, name_text.span, declaration.type_text.span))
     penalty = sections.last("violate_penalty")
-    number = read_number(penalty, findings) if penalty is not None else 0.0
+    number = read_number(penalty) if penalty is not None else 0.0
     if penalty is not None and number:
-        check_penalty(name, number, penalty.value.span, findings)
+        check_penalty(name, number, penalty.value.span, sections.findings)
     if not sections.all("dynamic_model"):
-        findings.error("AOS105", f"the skill {name} lacks `dynamic_model:`", sections.span)
+        sections.findings.error("AOS105", f"the skill {name} lacks `dynamic_model:`", sections.span)
     return SkillModel(
         project=project,
         name=name,

@@ -65,8 +65,18 @@ class Part(msgspec.Struct):
     body: Body
     span: Span
     value: Text
+    findings: Findings
     lines: list[Text] = []
     is_list: bool = False
+
+    @property
+    def place(self) -> Span:
+        """The place of its value, or its own where it has none."""
+        return self.value.span if self.value.text else self.span
+
+    def error(self, code: str, message: str, hint: str = "") -> None:
+        """Reports an error at the word."""
+        self.findings.error(code, message, self.span, hint)
 
     def takes(self, line: Text) -> bool:
         """Returns whether a line below belongs to it."""
@@ -101,12 +111,17 @@ class Section(Part):
     def all(self, word: str) -> Iterator[Part]:
         return (part for part in self.parts if part.word == word)
 
-    def last(self, word: str, findings: Findings) -> Part | None:
+    def last(self, word: str) -> Part | None:
         """The part of that name; of several the last counts, with a warning."""
-        return last_of(list(self.all(word)), findings)
+        return last_of(list(self.all(word)))
+
+    def code_of(self, word: str) -> Snippet | None:
+        """The code of the part of that name."""
+        part = self.last(word)
+        return part.code() if part is not None else None
 
 
-def last_of(parts: list[P], findings: Findings, ends: Collection[int] = ()) -> P | None:
+def last_of(parts: list[P], ends: Collection[int] = ()) -> P | None:
     """The last of several parts of one name, with an error for each whose text would be lost.
 
     It is a warning where it says the same, or a document ends between them, on one of these lines.
@@ -114,10 +129,10 @@ def last_of(parts: list[P], findings: Findings, ends: Collection[int] = ()) -> P
     for part in parts[:-1]:
         last, message = parts[-1], f"`{part.word}:` is given more than once"
         if _said(part) == _said(last) or any(part.span.line < line < last.span.line for line in ends):
-            findings.warning("AOS125", message, part.span, f"The one on line {last.span.line} counts")
+            part.findings.warning("AOS125", message, part.span, f"The one on line {last.span.line} counts")
         else:
             hint = f"Only that on line {last.span.line} would count. Make one of them"
-            findings.error("AOS103", message, part.span, hint)
+            part.findings.error("AOS103", message, part.span, hint)
     return parts[-1] if parts else None
 
 
@@ -127,14 +142,14 @@ def _said(part: Part) -> list[str]:
     return own + [text for each in inner for text in (each.word, *_said(each))]
 
 
-def listed_values(part: Part, findings: Findings) -> list[Text]:
+def listed_values(part: Part) -> list[Text]:
     """The names between commas in a part's value and the lines below it; an error where there are none."""
     lines = [line for line in (part.value, *part.lines) if line.text] or [part.value]
     if lines[0].text[:1] + lines[-1].text[-1:] in ("[]", "{}"):
-        findings.warning("AOS127", "brackets around the names", lines[0].span, "They are skipped")
+        part.findings.warning("AOS127", "brackets around the names", lines[0].span, "They are skipped")
         lines[0] = lines[0].after(1).strip()
         lines[-1] = Text(lines[-1].text[:-1], lines[-1].span).strip()
-    return [value for line in lines for value in enum_values(line, findings)]
+    return [value for line in lines for value in enum_values(line, part.findings)]
 
 
 def enum_values(text: Text, findings: Findings) -> list[Text]:
@@ -288,10 +303,10 @@ class _Scanner:
         canonical = entry.canonical or word
         value = value.strip() if entry.body is not Body.NONE else _without_comment(value)
         if is_part:
-            self._current = Part(canonical, entry.body, at.span, value, [], entry.is_list)
+            self._current = Part(canonical, entry.body, at.span, value, self._findings, [], entry.is_list)
             self._sections[-1].parts.append(self._current)
         else:
-            section = Section(canonical, entry.body, at.span, value, [], parts=[])
+            section = Section(canonical, entry.body, at.span, value, self._findings, parts=[])
             self._current = section
             self._sections.append(section)
             self._misplaced = set()
@@ -350,7 +365,7 @@ class _Scanner:
         if not words & self._misplaced:  # What belongs to one missing word is told once.
             self._findings.error("AOS102", f"`{name}:` has no place here", at.span, hint)
         self._misplaced = words
-        self._current = Part(name, Body.CPP, at.span, Text("", at.span), [])
+        self._current = Part(name, Body.CPP, at.span, Text("", at.span), self._findings)
         return True
 
     def _add_to_body(self, line: Text) -> None:
