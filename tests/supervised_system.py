@@ -10,7 +10,7 @@ from aos_deploy.processes.endpoint import hold_endpoint
 from aos_deploy.processes.program import Program
 from aos_deploy.processes.supervisor import Supervisor, supervised
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.summary import ProcessEnd
+from aos_deploy.runs.record import ProcessEnd
 from aos_protocol.errors import AosError
 from aos_runtime.clock import SystemClock
 from aos_runtime.processes.lifecycle import root_cause

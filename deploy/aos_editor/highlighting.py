@@ -7,7 +7,7 @@ from pathlib import PurePath
 
 import msgspec
 
-from aos_editor.built_ins import BUILT_INS
+from aos_editor.documents import BUILT_INS
 from aos_editor.symbols import Occurrence, SymbolKind
 from aos_language.cpp.keywords import CPP_KEYWORDS, SPECIAL_NAMES
 from aos_language.findings import Findings

@@ -12,9 +12,8 @@ from tests.chaos.up import Process
 
 from aos_deploy.history_check.files import check_run
 from aos_deploy.history_check.replayed import replayed
-from aos_deploy.runs.end import account_of
+from aos_deploy.runs.end import Verdict, account_of
 from aos_deploy.runs.living import chosen_run
-from aos_deploy.runs.verdict import Verdict
 
 _LEFT_S = 15.0
 

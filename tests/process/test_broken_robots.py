@@ -11,7 +11,7 @@ from processes import COMMAND_S
 from walk import steps_of
 
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.summary import Summary
+from aos_deploy.runs.record import Summary
 
 ROBOT = """
 import os

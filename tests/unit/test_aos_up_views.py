@@ -12,7 +12,7 @@ from rich.console import Console
 from aos_deploy.commands import decisions
 from aos_deploy.events import Event, ServiceChanged, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
-from aos_deploy.runs.verdict import Account
+from aos_deploy.runs.end import Account
 from aos_deploy.terminal import console
 from aos_deploy.views import make_view
 from aos_deploy.views.lines import JsonView, PlainView, decision_line

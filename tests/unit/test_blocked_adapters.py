@@ -5,14 +5,14 @@ from processes import finished
 
 PROGRAM = """
 import asyncio, ctypes, time
-from aos_runtime.adapters import blocking
+from aos_runtime.adapters import results
 
 async def call():
-    with blocking.ends_if_blocked("/sense", 0.1):
+    with results.ends_if_blocked("/sense", 0.1):
         {takes_time}
     print("went on")
 
-blocking._ANSWER_S = {answer_s}
+results._ANSWER_S = {answer_s}
 asyncio.run(call())
 """
 

@@ -8,8 +8,7 @@ from aos_skills.pybullet.parts.room_file import Place
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.cleanlab import KIND
 from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile, FaultModel
-from aos_skills.pybullet.worlds.cleanlab.seeing import place_of_cup
-from aos_skills.pybullet.worlds.cleanlab.world import CleanLab, filled_stations
+from aos_skills.pybullet.worlds.cleanlab.world import CleanLab, filled_stations, place_of_cup
 
 pytestmark = pytest.mark.physics
 

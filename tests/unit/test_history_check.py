@@ -9,7 +9,7 @@ from places import ROOT
 from aos_deploy.history_check import check
 from aos_deploy.history_check.check import RULES
 from aos_deploy.history_check.files import check_run
-from aos_deploy.runs.verdict import Account, Verdict
+from aos_deploy.runs.end import Account, Verdict
 from aos_protocol import messages
 from aos_runtime.disk.journal import Journal, JournalRow
 

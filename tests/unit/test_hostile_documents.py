@@ -5,7 +5,7 @@ import pytest
 from hostile.counters import counting
 from texts import encoded
 
-from aos_deploy.faults import print_fault
+from aos_deploy.printing import print_fault
 from aos_gateway.runs.uploads import files_of_upload, keep_project
 from aos_language.cpp import tree
 from aos_language.cpp.snippets import read_cpp

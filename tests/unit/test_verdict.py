@@ -6,9 +6,8 @@ import pytest
 from decision_records import decision_record
 
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.end import account_of, settled
-from aos_deploy.runs.summary import Summary
-from aos_deploy.runs.verdict import Account
+from aos_deploy.runs.end import Account, account_of, settled
+from aos_deploy.runs.record import Summary
 from aos_protocol.errors import DeployError, DocumentError, StorageError
 from aos_protocol.messages import (
     ActivationId,

@@ -6,11 +6,10 @@ from pathlib import Path
 import msgspec
 from msgspec.structs import replace
 
-from aos_deploy.deployment.constraints import constrained
+from aos_deploy.deployment.constraints import constrained, findings_of, refuse_errors
 from aos_deploy.deployment.folder import deploy_file_at, deploy_files_in
 from aos_deploy.deployment.mission_values import with_values
 from aos_deploy.deployment.reading import Deployment, read_deploy_file
-from aos_deploy.deployment.told_mistakes import findings_of, refuse_errors
 from aos_deploy.printing import from_here
 from aos_language.follow_ups import told_once
 from aos_language.load import load_files, read_bundle_files

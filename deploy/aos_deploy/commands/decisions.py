@@ -106,7 +106,7 @@ def _reason(event: DecisionRecord | MissionState) -> list[str]:
 
 def _journaled(directory: RunDirectory, mission: int) -> Iterator[DecisionRecord | MissionState]:
     """The decisions of a mission that is over, and how it ended; by number in a system that stays."""
-    from aos_deploy.runs.verdict import message_of_row
+    from aos_deploy.runs.end import message_of_row
     from aos_runtime.disk.journal import rows_of
 
     for row in rows_of(mission_folder(directory.path, mission) / JOURNAL):

@@ -16,8 +16,7 @@ from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.end import beginning_of, ending_without_summary
 from aos_deploy.runs.living import living_runs, runs_here
 from aos_deploy.runs.pruning import Pruned, pruned
-from aos_deploy.runs.record import RunRecord
-from aos_deploy.runs.summary import Summary
+from aos_deploy.runs.record import RunRecord, Summary
 from aos_protocol.errors import DeployError
 from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 

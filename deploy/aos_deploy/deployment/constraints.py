@@ -1,12 +1,15 @@
-"""The mission's constraints: from the deploy file, or an option, to the project that they are about."""
+"""The mission's constraints: from the deploy file, or an option, to the project that they are about.
+
+Findings about what stands in a deploy file or an option, and their refusal, are made here for both.
+"""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from msgspec.structs import replace
 
-from aos_deploy.deployment.told_mistakes import findings_of, refuse_errors
 from aos_language.check.constraints import check_constraints
+from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Constraint, Project, Snippet
 from aos_protocol.errors import DeployError
@@ -54,3 +57,17 @@ def constrained(
         findings.error("AOS142", f"more than {MAX_CONSTRAINTS} constraints", where, "Join some of them by ||")
     refuse_errors(findings, "the mission's constraints have errors")
     return replace(project, constraints=tuple(constraints))
+
+
+def findings_of(sources: Iterable[str | Path]) -> Findings:
+    """Findings that show the lines of these files."""
+    findings = Findings()
+    for source in sources:
+        findings.add_source(str(source), Path(source).read_text(encoding="utf-8").splitlines())
+    return findings
+
+
+def refuse_errors(findings: Findings, message: str) -> None:
+    """Raises DeployError AOS801 with all findings where one is an error."""
+    if findings.has_errors:
+        raise DeployError(message, diagnostics=findings.sorted())

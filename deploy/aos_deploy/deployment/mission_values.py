@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 from msgspec.structs import replace
 
-from aos_deploy.deployment.told_mistakes import findings_of, refuse_errors
+from aos_deploy.deployment.constraints import findings_of, refuse_errors
 from aos_deploy.deployment.yaml_source import YamlList, YamlMap, YamlNode
 from aos_language.findings import Findings
 from aos_language.mission_parameters import OPTION, checked_values, mission_value_of_option, parameter_leaves

@@ -7,7 +7,7 @@ import msgspec
 
 from aos_deploy.history_check.journal_rules import KINDS, Found, JournalRules
 from aos_deploy.history_check.ledger_rules import ADAPTER_KINDS, MIDDLEWARE_KINDS, LedgerRules, Motions
-from aos_deploy.runs.verdict import Verdict
+from aos_deploy.runs.end import Verdict
 from aos_protocol.errors import StorageError
 from aos_runtime.disk.journal import JournalError, JournalRow
 from aos_runtime.disk.mission_folders import JOURNAL

@@ -6,8 +6,8 @@ import msgspec
 
 from aos_deploy.history_check.check import MIDDLEWARE, Checked, History, check_histories
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.summary import Summary
-from aos_deploy.runs.verdict import Verdict
+from aos_deploy.runs.end import Verdict
+from aos_deploy.runs.record import Summary
 from aos_runtime.disk.journal import rows_of
 from aos_runtime.disk.mission_folders import journals, mission_name
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from aos_deploy.runs.verdict import Account
+from aos_deploy.runs.end import Account
 from aos_protocol import messages
 from aos_protocol.messages import ActionRefused, DecisionRecord, MissionState, Steer
 from aos_protocol.mission_rows import DRIFT, MESSAGES

@@ -21,11 +21,9 @@ from aos_deploy.processes.endpoint import hold_endpoint
 from aos_deploy.processes.program import outsiders_of, programs_of_deployment
 from aos_deploy.processes.supervisor import Supervisor, supervised
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.end import account_of, beginning_of, settled
+from aos_deploy.runs.end import Account, Verdict, account_of, beginning_of, settled
 from aos_deploy.runs.living import noted
-from aos_deploy.runs.record import record_of
-from aos_deploy.runs.summary import Summary
-from aos_deploy.runs.verdict import Account, Verdict
+from aos_deploy.runs.record import Summary, record_of
 from aos_deploy.spans.rest import send_rest
 from aos_protocol import messages
 from aos_protocol.errors import AosError, DeployError, DocumentError, StorageError

@@ -7,7 +7,7 @@ from aos_deploy.events import Report, Told
 from aos_deploy.printing import from_here
 from aos_deploy.processes.supervisor import Supervisor
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.summary import Summary
+from aos_deploy.runs.record import Summary
 from aos_protocol.errors import AosError, StorageError
 from aos_runtime.clock import Clock
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text

@@ -16,8 +16,7 @@ from aos_deploy.processes.program import Program, outsiders_of, programs_of_depl
 from aos_deploy.processes.supervisor import supervised
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.living import noted
-from aos_deploy.runs.record import record_of
-from aos_deploy.runs.summary import RunEnd
+from aos_deploy.runs.record import RunEnd, record_of
 from aos_language.load import load_bundle
 from aos_protocol.errors import AosError, DeployError
 from aos_runtime.clock import Clock

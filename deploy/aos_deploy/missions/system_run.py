@@ -12,9 +12,8 @@ from aos_deploy.missions.mission_run import MissionRun
 from aos_deploy.printing import count, time_text
 from aos_deploy.processes.supervisor import Supervisor
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.end import settled
-from aos_deploy.runs.summary import Summary, SystemSummary
-from aos_deploy.runs.verdict import Account, Verdict
+from aos_deploy.runs.end import Account, Verdict, settled
+from aos_deploy.runs.record import Summary, SystemSummary
 from aos_protocol.errors import AosError, MissionRunsError, SteeringError, StorageError
 from aos_protocol.messages import DecisionRecord, MissionEntry, MissionState, StartMission
 from aos_protocol.mission_rows import DECISION

@@ -41,7 +41,7 @@ from aos_deploy.processes.remote import is_lost, was_frozen
 from aos_deploy.processes.silences import Returns, Silences
 from aos_deploy.processes.start import ROUTER_MODULE, start_process
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.summary import ProcessEnd
+from aos_deploy.runs.record import ProcessEnd
 from aos_protocol.access import OPERATOR, Party
 from aos_protocol.errors import DeployError
 from aos_protocol.keys import Keys, Serving

@@ -29,17 +29,15 @@ from typing import Any, BinaryIO
 import msgspec
 
 from aos_deploy.runs.bus_socket import place_of_socket, remove_socket
-from aos_deploy.runs.record import RunRecord
-from aos_deploy.runs.summary import Summary
+from aos_deploy.runs.record import RunRecord, Summary
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
 from aos_protocol.spelling import did_you_mean_path
-from aos_runtime.disk.folder_lock import locked_folder
 from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 from aos_runtime.failpoints import reach
+from aos_runtime.files import PRIVATE, locked_folder, write_whole
 from aos_runtime.processes.settings import fault_path
-from aos_runtime.whole_file import PRIVATE, write_whole
 
 LATEST = "latest"
 """The link to the newest run, in the folder of runs."""

@@ -22,7 +22,7 @@ from aos_deploy.deployment.reading import Deployment
 from aos_deploy.missions.mission_run import MissionRun
 from aos_deploy.processes.needed_here import check_needed_here
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.summary import Summary
+from aos_deploy.runs.record import Summary
 from aos_lab.trials.model_player import ModelMissions, ModelPlayer
 from aos_lab.trials.trial import Trial, truth_lines
 from aos_middleware.mappings.revisions import emit_project

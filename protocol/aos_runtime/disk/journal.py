@@ -23,7 +23,6 @@ from aos_protocol.errors import StorageError
 from aos_protocol.messages import Message
 from aos_runtime import failpoints
 from aos_runtime.clock import Clock, SystemClock
-from aos_runtime.disk.plain_tables import require_plain_tables
 
 if TYPE_CHECKING:
     from typing import Self  # not in Python 3.10
@@ -227,3 +226,17 @@ def _prepared(path: Path, code: str) -> Iterator[sqlite3.Connection]:
 
 def _fault(code: str, path: Path, error: Exception) -> StorageError:
     return JournalError(path, str(error), code)
+
+
+def require_plain_tables(connection: sqlite3.Connection) -> None:
+    """Raises sqlite3.DatabaseError where something that can be read is no plain table.
+
+    A database may come from a stranger. A view or a computed column is a program: SQLite runs it for whoever
+    reads, who waits for ever, out of reach of Ctrl-C, where it has no end.
+    """
+    found = connection.execute("SELECT name, type, sql FROM sqlite_schema WHERE type IN ('table', 'view')")
+    for name, kind, sql in found.fetchall():
+        is_table = kind == "table" and not str(sql).lstrip().upper().startswith("CREATE VIRTUAL")
+        columns = connection.execute("SELECT hidden FROM pragma_table_xinfo(?)", (name,)) if is_table else ()
+        if not is_table or any(hidden for (hidden,) in columns):
+            raise sqlite3.DatabaseError(f"{name} is no plain table")

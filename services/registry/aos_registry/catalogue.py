@@ -16,7 +16,7 @@ import msgspec
 
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import CatalogueEntry, RevisionEntry
-from aos_runtime.disk.plain_tables import require_plain_tables
+from aos_runtime.disk.journal import require_plain_tables
 
 _SCHEMA_VERSION = 2
 _BUSY_TIMEOUT_S = 5.0

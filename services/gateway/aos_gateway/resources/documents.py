@@ -15,7 +15,7 @@ from aos_protocol.documents import Project, Snippet
 from aos_protocol.errors import AosError, GatewayError, StorageError
 from aos_protocol.messages import Catalogue, CatalogueEntry
 from aos_registry.catalogue import Catalogue as KeptCatalogue
-from aos_runtime.disk.plain_tables import require_plain_tables
+from aos_runtime.disk.journal import require_plain_tables
 
 
 class DocumentFile(msgspec.Struct, frozen=True):

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import msgspec
 from msgspec.structs import replace
 
-from aos_deploy.runs.summary import Summary
+from aos_deploy.runs.record import Summary
 from aos_gateway.resources.documents import draws_state
 from aos_gateway.resources.events import place_of, stream
 from aos_gateway.resources.run_files import number_of_step

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import msgspec
 
-from aos_deploy.runs.summary import ProcessEnd
+from aos_deploy.runs.record import ProcessEnd
 from aos_gateway.operations import Content
 from aos_gateway.runs.run import KeptRun
 from aos_gateway.shared import Gateway

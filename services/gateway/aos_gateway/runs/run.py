@@ -9,10 +9,8 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.end import ending_without_summary
-from aos_deploy.runs.record import RunRecord
-from aos_deploy.runs.summary import Summary
-from aos_deploy.runs.verdict import message_of_row
+from aos_deploy.runs.end import ending_without_summary, message_of_row
+from aos_deploy.runs.record import RunRecord, Summary
 from aos_protocol.access import WATCHER
 from aos_protocol.errors import AosError, GatewayError
 from aos_protocol.messages import History, HistoryQuery, MissionBegun, MissionEntry, MissionState

@@ -14,10 +14,9 @@ import msgspec
 
 from aos_language.observed import reported_numbers
 from aos_language.templates import templates_in
-from aos_middleware.emission.generated_lines import word
+from aos_middleware.emission.generated_lines import ReadSnippets, word
 from aos_middleware.emission.module_names import ModuleNames
 from aos_middleware.emission.python_code import LineOrigin, python_fault
-from aos_middleware.emission.read_snippets import ReadSnippets
 from aos_middleware.emission.sections import Sections
 from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill, SkillModel, Snippet

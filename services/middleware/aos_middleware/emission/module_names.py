@@ -9,9 +9,8 @@ import msgspec
 
 from aos_language.local_types import RESERVED_LOCAL_NAMES
 from aos_language.python_syntax import module_of
-from aos_middleware.emission.generated_lines import literal
+from aos_middleware.emission.generated_lines import ReadSnippets, function_name, literal
 from aos_middleware.emission.python_code import LineOrigin, read_body
-from aos_middleware.emission.read_snippets import ReadSnippets, function_name
 from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.documents import AbstractionMapping, Import, LocalSource, LowLevelDocument, Snippet
 

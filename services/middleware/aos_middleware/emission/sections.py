@@ -8,9 +8,8 @@ from collections.abc import Iterable
 import msgspec
 
 from aos_language.local_types import OF_SKILL
-from aos_middleware.emission.generated_lines import literal, word
+from aos_middleware.emission.generated_lines import ReadSnippets, function_name, literal, word
 from aos_middleware.emission.python_code import LineOrigin, PythonCode
-from aos_middleware.emission.read_snippets import ReadSnippets, function_name
 from aos_protocol.documents import (
     DEFAULT_RESPONSE,
     AbstractionMapping,

@@ -12,9 +12,8 @@ from aos_protocol.messages import ActionValue, DecisionRecord, WhatIf, WhatIfQue
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.earlier_models import built_for
 from aos_solver.mission.models.past import replayed
-from aos_solver.study.aside import put_aside
 from aos_solver.study.replaying import ReplayedMission
-from aos_solver.study.supposing import believe_all, changed_files
+from aos_solver.study.supposing import believe_all, changed_files, put_aside
 
 
 class OtherDocuments(NamedTuple):

@@ -9,9 +9,9 @@ from aos_protocol.unavailable import told_together
 from aos_solver.child.answers.models import RewardTerms
 from aos_solver.child.engine import Engine
 from aos_solver.mission.models.past import updated
-from aos_solver.study.aside import put_aside
 from aos_solver.study.flips import flips_of
 from aos_solver.study.replaying import ReplayedMission
+from aos_solver.study.supposing import put_aside
 from aos_solver.study.traced_engines import TracedEngine, TracedEngines
 from aos_solver.study.valuing import Margin, Value, Valuing, best_of
 

@@ -24,11 +24,11 @@ from aos_protocol.messages import (
     WhyQuery,
 )
 from aos_runtime.background import Closing
-from aos_solver.study.aside import put_aside
 from aos_solver.study.other_circumstances import OtherDocuments, decided_otherwise
 from aos_solver.study.reasons import Reasons
 from aos_solver.study.recorded import RecordedMission
 from aos_solver.study.replaying import ReplayedMission
+from aos_solver.study.supposing import put_aside
 from aos_solver.study.traced_engines import TracedEngines
 from aos_solver.study.valuing import Value, Valuing
 

@@ -1,8 +1,12 @@
-"""Suppositions as text: another probability of a variable's value, another number in a document."""
+"""Suppositions as text: another probability of a variable's value, another number in a document.
+
+A belief is put aside while others are supposed.
+"""
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import AsyncIterator, Iterable
+from contextlib import asynccontextmanager
 from typing import NamedTuple
 
 from aos_language.number_text import is_number
@@ -117,3 +121,18 @@ def _place_of_number(text: str, place: str, column: int | None) -> tuple[int, in
         raise StudyError(f"{place} has no number there: {text.strip()}", hint="Name a line with a number")
     columns = ", ".join(f"{place}:{start + 1}={text[start:end]}" for start, end in found)
     raise StudyError(f"{place} has {len(found)} numbers", hint=f"Name one by its column: {columns}")
+
+
+@asynccontextmanager
+async def put_aside(engine: Engine) -> AsyncIterator[None]:
+    """Gives an engine its belief back at the end, also where a question was refused.
+
+    After any other error, or where nobody waits for the end, the engine is of no use any more.
+    """
+    await engine.put_aside()
+    try:
+        yield
+    except SkillError:
+        await engine.take_back()
+        raise
+    await engine.take_back()

@@ -1,17 +1,38 @@
 """The world as the adapter sees it: skills by path, sensors by topic, the truth, and pictures.
 
 A world is a folder under `worlds` whose `__init__` has a `KIND`. Nothing outside the folder knows its words.
+Faults that a simulator cannot produce are drawn from the mission's seed and kept for the record.
 """
 
+import random
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from aos_skills.pybullet.parts.camera import Camera
-from aos_skills.pybullet.parts.faults import Faults
 from aos_skills.pybullet.parts.room_file import RoomFile
 from aos_skills.pybullet.parts.scene import Scene
+
+
+class Faults:
+    """`drawn` holds the faults of the current call; `noise` is the source of perception's errors.
+
+    Faults and noise have generators of their own, so that one more fault in a model does not shift the noise.
+    """
+
+    def __init__(self, seed: int) -> None:
+        self._chance = random.Random(f"faults {seed}")
+        self.noise = random.Random(f"perception {seed}")
+        self.drawn: list[str] = []
+
+    def draw(self, fault: str, probability: float) -> bool:
+        """Draws whether a fault happens now."""
+        happens = self._chance.random() < probability
+        if happens:
+            self.drawn.append(fault)
+        return happens
+
 
 Fields = dict[str, Any]
 """The fields of a request, an answer or a message, by name."""

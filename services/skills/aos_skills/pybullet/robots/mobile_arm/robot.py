@@ -89,3 +89,17 @@ def mobile_arm_urdf(data: Path, mount_m: tuple[float, float, float]) -> str:
         if link.find("inertial") is None:
             link.append(ElementTree.fromstring(_UNIT_INERTIA))
     return ElementTree.tostring(robot, encoding="unicode")
+
+
+SHOULDER_AHEAD_M = 0.25
+"""The distance of the arm's foot from the middle of the base."""
+SLOWLY_M_S = 0.15
+
+
+def grasp_from_above(robot: MobileArm, place: tuple[float, float, float], above_m: float) -> None:
+    """Reaches down to `place` (metres), closes the fingers and lifts to the height `above_m`."""
+    x, y, height = place
+    robot.arm.move_tip((x, y, above_m))
+    robot.arm.move_tip((x, y, height), speed_m_s=SLOWLY_M_S)
+    robot.gripper.close()
+    robot.arm.move_tip((x, y, above_m))

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from aos_skills.pybullet.parts.arm import TUCKED
 from aos_skills.pybullet.parts.boom_camera import Colors, top_seen
-from aos_skills.pybullet.robots.mobile_arm.grasp import SHOULDER_AHEAD_M, grasp_from_above
+from aos_skills.pybullet.robots.mobile_arm.robot import SHOULDER_AHEAD_M, grasp_from_above
 from aos_skills.pybullet.worlds.armadillo.room import TABLE_TOP_M, TRAY_FROM_PERSON_M, TRAY_TOP_M
 from aos_skills.pybullet.worlds.armadillo.world import FOLDED_ELBOW_RAD, Armadillo
 

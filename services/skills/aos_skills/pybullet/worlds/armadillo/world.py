@@ -4,9 +4,8 @@ import math
 from typing import Any
 
 from aos_skills.pybullet.parts.camera import Camera, Pose
-from aos_skills.pybullet.parts.faults import Faults
 from aos_skills.pybullet.parts.scene import Scene
-from aos_skills.pybullet.parts.world import World
+from aos_skills.pybullet.parts.world import Faults, World
 from aos_skills.pybullet.robots.mobile_arm import MobileArm
 from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile
 from aos_skills.pybullet.worlds.armadillo.room import Room

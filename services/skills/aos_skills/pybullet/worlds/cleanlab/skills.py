@@ -4,9 +4,8 @@ import math
 from typing import Any
 
 from aos_skills.pybullet.parts.arm import TUCKED
-from aos_skills.pybullet.robots.mobile_arm.grasp import grasp_from_above
-from aos_skills.pybullet.worlds.cleanlab.seeing import place_of_cup
-from aos_skills.pybullet.worlds.cleanlab.world import AHEAD_M, BIN_TOP_M, TABLE_TOP_M, CleanLab
+from aos_skills.pybullet.robots.mobile_arm.robot import grasp_from_above
+from aos_skills.pybullet.worlds.cleanlab.world import AHEAD_M, BIN_TOP_M, TABLE_TOP_M, CleanLab, place_of_cup
 
 LOOKING_S = 0.5
 

@@ -9,9 +9,8 @@ from PIL import Image
 
 from aos_skills.pybullet.parts.arm import TUCKED
 from aos_skills.pybullet.parts.camera import SUN, Camera, Pose, photograph
-from aos_skills.pybullet.parts.faults import Faults
 from aos_skills.pybullet.parts.scene import Scene, Vector
-from aos_skills.pybullet.parts.world import World
+from aos_skills.pybullet.parts.world import Faults, World
 from aos_skills.pybullet.robots.panda import PandaWithPen
 from aos_skills.pybullet.worlds.tictactoe.board import CENTRE_M, Board
 from aos_skills.pybullet.worlds.tictactoe.file import TicTacToeFile
