@@ -123,6 +123,16 @@ def test_plain_lines_tell_each_event_once(capsys):
     ]
 
 
+def test_the_end_of_each_mission_and_each_hold_are_told_though_the_words_are_the_same(capsys):
+    view = PlainView()
+    for mission in ("m-1", "m-2"):
+        for step, phase, remark in ((2, "holding", "no arm"), (3, "holding", "no arm"), (3, "ended", "done")):
+            for _ in range(2):
+                view(MissionState(mission, phase, step, 0.0, remark=remark))
+    told = ["mission holding: no arm", "mission holding: no arm", "mission ended: done"]
+    assert capsys.readouterr().out.splitlines() == told * 2
+
+
 def test_a_removal_that_is_refused_is_told_with_its_project(capsys):
     PlainView()(BundleReport("fetch", False, 3))
     assert capsys.readouterr().out == "a change of fetch refused, nothing has changed\n"

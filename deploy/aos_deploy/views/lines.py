@@ -39,7 +39,8 @@ class PlainView(_Lines):
     """
 
     def __init__(self) -> None:
-        self._last_remark = ""
+        self._last = ("", 0, "")
+        """The mission, step and remark that were told last."""
         self._last_told_s = 0.0
 
     def __call__(self, event: Event) -> None:
@@ -47,17 +48,18 @@ class PlainView(_Lines):
             return
         if isinstance(event, messages.MissionState):
             # What acts is in the decision's own line.
-            if not event.remark or event.remark == self._last_remark or event.phase == "acting":
+            told = (event.mission, event.step, event.remark)
+            if not event.remark or told == self._last or event.phase == "acting":
                 return
             if event.phase == "planning" and not self._is_due(event.remark):
                 return
-            self._last_remark = event.remark
+            self._last = told
             self._last_told_s = time.monotonic()
         for line in lines_of(event):
             print(line, flush=True)
 
     def _is_due(self, remark: str) -> bool:
-        is_the_same_work = remark.partition(":")[0] == self._last_remark.partition(":")[0]
+        is_the_same_work = remark.partition(":")[0] == self._last[2].partition(":")[0]
         return not is_the_same_work or time.monotonic() >= self._last_told_s + _TELLING_AGAIN_S
 
 
