@@ -252,8 +252,10 @@ def test_a_file_of_several_runs_names_them(run: Path, tmp_path):
     target = tmp_path / "sent.aosrun"
     write_bundle([run, other], target)
     assert [path.name for path in opened_bundle(target)] == ["a-run", "b-run"]
-    with pytest.raises(DeployError, match="has 2 runs"):
+    with pytest.raises(DeployError, match="has 2 runs") as raised:
         chosen_run(target, None)
+    folder = opened_bundle(target)[0].parent
+    assert raised.value.hint == f"Name one in {folder}. The newest there: a-run, b-run"
 
 
 def test_a_link_in_a_file_is_refused_and_so_is_what_is_no_archive(tmp_path):

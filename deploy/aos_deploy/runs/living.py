@@ -19,6 +19,7 @@ from aos_deploy.runs.end import ending_without_summary
 from aos_protocol.errors import BusError, DeployError
 
 RUNS = Path("runs")
+_SHOWN_RUNS = 3
 """Commands look for run directories here unless told otherwise, or in `runs_here`."""
 
 
@@ -149,7 +150,8 @@ def _opened(file: Path) -> Path:
     """The directory of the run in a file, unpacked."""
     runs = opened_bundle(file)
     if len(runs) > 1:
-        hint = f"Name one of {', '.join(map(str, runs))}"
+        shown = ", ".join(run.name for run in runs[-_SHOWN_RUNS:])
+        hint = f"Name one in {runs[0].parent}. The newest there: {shown}"
         raise DeployError(f"{file} has {len(runs)} runs", code="AOS901", hint=hint)
     return runs[0]
 
