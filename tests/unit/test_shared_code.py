@@ -299,6 +299,11 @@ def test_a_misspelt_name_is_told_with_one_that_documents_have(said, name, hint):
             "`right` was not declared",
             "",
         ),
+        (
+            "'depth' was not declared in this scope",
+            "`depth` was not declared",
+            "It has to stand before its first use",
+        ),
     ],
 )
 def test_messages_are_told_in_the_documents_terms_with_what_to_write(said, message, hint):
@@ -310,6 +315,19 @@ def test_messages_are_told_in_the_documents_terms_with_what_to_write(said, messa
 
 
 # --- mistakes ---
+
+
+@pytest.mark.parametrize(
+    ("change", "hint"),
+    [
+        ("constexpr int start -> using namespace std;\nconstexpr int start", "Leave it out"),
+        ("int size\n -> Grip size\n", "Declare it with `define_type:`"),
+        ("int size\n -> Whole size\n", "Write the type that it stands for"),
+    ],
+)
+def test_what_shared_code_need_not_or_cannot_declare_is_told_with_what_to_write(change, hint):
+    whole = "enum Grip -> using Whole = int;\nenum Grip"
+    assert hint in [finding.hint for finding in found(whole, change)]
 
 
 @pytest.mark.parametrize(

@@ -88,6 +88,11 @@ def _check_type(name: str, span: Span, scope: Scope, findings: Findings) -> bool
         a = "an" if unknown[0] in "aeiou" else "a"
         findings.error("AOS110", f"no state can hold {a} `{unknown}`", span, INSTEAD[unknown])
         return False
+    if (kind := next((each.kind for each in scope.shared.names if each.name == unknown), "")) != "":
+        hint = "Declare it with `define_type:`" if kind == "enum" else "Write the type that it stands for"
+        message = f"`{unknown}` is of the shared code, which only code sees"
+        findings.error("AOS110", message, span, hint)
+        return False
     findings.unknown(unknown, scope.type_names, f"unknown type `{unknown}`", span, otherwise)
     return False
 

@@ -196,6 +196,8 @@ class _Reading:
                 self._other_types = re.compile(names)
         elif kind in ("struct_specifier", "class_specifier", "union_specifier"):
             self._misuse(node, "a structure in shared code", "Declare a compound type with `define_type:`")
+        elif kind == "using_declaration":
+            self._misuse(node, "names of the library are known without this", "Leave it out")
         else:
             self._misuse(node, "this is no declaration", _HINT)
 

@@ -58,7 +58,7 @@ class Extent(NamedTuple):
 
 _IN_PLACE_OF = {
     "include": "The standard library's algorithms, containers and mathematics are there without it",
-    "define": "Constants and functions stand in `shared_code:` of the environment document",
+    "define": "Write `const int NAME = 4;`: constants and functions are `shared_code:` of the environment",
 }
 """Directives that people write, with what there is in their place."""
 

@@ -143,6 +143,8 @@ def _advice(name: str, hint: str, emitted: EmittedModel) -> str:
         return f"A section begins with its word and a colon: `{name}:`"
     if name in _OF_PYTHON:
         return f"C++ writes `{_OF_PYTHON[name]}`"
+    if name in emitted.names:
+        return "It has to stand before its first use"
     return did_you_mean(name, sorted(emitted.names - {name})) if name else ""
 
 
