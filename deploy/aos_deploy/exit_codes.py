@@ -71,7 +71,7 @@ def exit_code_of_error(error: AosError) -> ExitCode:
 def _before_the_mission(code: str) -> ExitCode:
     if code in ("AOS501", "AOS530"):
         return ExitCode.USAGE  # Nothing has failed: there is no such thing, or it cannot be asked so.
-    if code.startswith(("AOS1", "AOS32")) or code in ("AOS201", "AOS801", "AOS808", "AOS810"):
+    if code.startswith(("AOS1", "AOS32")) or code in ("AOS201", "AOS801", "AOS808", "AOS810", "AOS901"):
         return ExitCode.DOCUMENTS_WRONG
     if code.startswith(("AOS6", "AOS8")) or code in (
         "AOS202",

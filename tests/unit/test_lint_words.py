@@ -127,6 +127,16 @@ def test_a_penalty_above_0_is_told_at_its_number():
     assert only.hint == "A penalty is added to the reward: write -2.5"
 
 
+def test_a_draw_that_would_make_actions_is_told():
+    code = "if (AOS.Bernoulli(0.4)) __possibleParameters.push_back(std::make_tuple(1));"
+    listing = f"\navailable_parameters_code:\n{code}\n"
+    drawn = "\naction_parameter: int near\ncode:\nstate.near = AOS.SampleUniform(0, 9);\n"
+    for place in ({"skill": SKILL + listing}, {"environment": ENVIRONMENT + drawn}):
+        assert [told for told in finding_texts(**place) if "AOS124 actions are made once, from the" in told]
+    initial = ENVIRONMENT + "\nstate_variable: int far\ncode:\nstate.far = AOS.SampleUniform(0, 9);\n"
+    assert not [told for told in finding_texts(environment=initial) if "AOS124" in told]
+
+
 def test_a_skill_that_may_always_be_used_needs_no_penalty():
     skill = SKILL.replace("violate_penalty: -1\n", "")
     assert any("AOS147" in told for told in finding_texts(skill=skill))

@@ -7,6 +7,7 @@ import msgspec
 
 from aos_language.check.models.blocks import (
     DEFAULT,
+    PARAMETERS,
     PRECONDITION,
     Block,
     environment_blocks,
@@ -18,7 +19,7 @@ from aos_language.check.models.mentions import LITERAL_NAMES, MentionCheck, chec
 from aos_language.check.models.weights import check_weights
 from aos_language.check.scope import Scope
 from aos_language.check.shared_calls import check_shared_call
-from aos_language.cpp.keywords import STATES
+from aos_language.cpp.keywords import DRAW_SOURCES, STATES
 from aos_language.cpp.snippets import Call, Cpp, DeclarationKind, Extent, FaultKind, read_cpp
 from aos_language.cpp.unset import unset_reads
 from aos_language.findings import Findings
@@ -158,6 +159,7 @@ class _BlockCheck:
             self._check_semicolons()
         for mention in self._cpp.mentions:
             self._mentions.check(mention)
+        self._check_fixed_draws()
         self._check_calls()
         self._check_lone_name()
         self._check_conditions()
@@ -168,6 +170,18 @@ class _BlockCheck:
             self._check_idle()
             if not self._block.is_expression:
                 self._check_unset(self._cpp)
+
+    def _check_fixed_draws(self) -> None:
+        """Warns of a draw in what makes the grounded actions."""
+        variable = self._scope.variables.get(self._block.sets)
+        makes_values = self._block.role is DEFAULT and variable is not None and variable.is_parameter_value
+        if not makes_values and self._block.role is not PARAMETERS:
+            return
+        for mention in self._cpp.mentions:
+            if mention.path[0] in DRAW_SOURCES | self._scope.shared.drawing:
+                message = "actions are made once, from the likeliest outcome of this draw"
+                hint = "Draw in the initial belief, and let a precondition look at it"
+                self._findings.warning("AOS124", message, self._span(mention.root), hint)
 
     def _is_idle_default(self) -> bool:
         """Warns of code for a variable's default that sets nothing."""

@@ -101,7 +101,9 @@ class ModelOf {
     prepared_.grounded.clear();
     prepared_.monitors.clear();
     ground(Skills{}, draft);
-    if (prepared_.grounded.actions.empty()) throw ModelFault{"AOS119", "no skill has a grounded action"};
+    if (prepared_.grounded.actions.empty()) {
+      throw ModelFault{"AOS119", "no skill has a grounded action: lists are made once, from the variables' defaults"};
+    }
     blame::at(0);
   }
 
