@@ -74,6 +74,16 @@ def linted(folder: Path, exit_code: int = 0) -> dict[str, Any]:
     }
 
 
+def test_a_skill_whose_list_of_parameters_is_empty_is_told(hall):
+    folder = hall("state__.place = std::min(state.place + 1, 3);")
+    listing = (
+        "parameter: int to\navailable_parameters_code:\nfor (int i = 0; i < state.place; i++) {listed}\n"
+    )
+    listed = listing.format(listed="__possibleParameters.push_back(std::make_tuple(i));")
+    write_texts({"jump.sd": f"project: hall\n{listed}dynamic_model:\n__moduleResponse = jumped;\n"}, folder)
+    assert linted(folder)["AOS119"][:2] == ("warning", "jump.sd:4")
+
+
 def _place(span: dict[str, Any]) -> str:
     return f"{span['file']}:{span['line']}"
 

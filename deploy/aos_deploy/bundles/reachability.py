@@ -44,6 +44,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
             engine.on_progress = tell
             await engine.tell_progress(0)
             ended = ended_start_findings(project.environment, await engine.summary())
+            ended += _without_actions(project, {action.skill for action in engine.description.actions})
             reach = await engine.reach(_TIME_S, MAX_CPU_S)
             extent = _extent(reach)
             if not reach.is_whole:
@@ -74,6 +75,16 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
             message = f"the precondition of {_named(unmet, len(actions), skill.name)} is never met"
             findings.warning("AOS131", message, skill.model.precondition[0].span, _extent(reach))
     return (*ended, *endless, *findings.diagnostics)
+
+
+def _without_actions(project: Project, used: set[str]) -> tuple[Diagnostic, ...]:
+    """The skills whose lists of parameters are empty."""
+    findings = Findings()
+    for model in (skill.model for skill in project.skills if skill.name not in used):
+        place = model.possible_parameters[0].span if model.possible_parameters else model.span
+        hint = "Its list is made once, from the variables' defaults"
+        findings.warning("AOS119", f"{model.name} has no grounded action", place, hint)
+    return findings.diagnostics
 
 
 def _not_looked_at(place: Span, extent: str) -> Diagnostic:
