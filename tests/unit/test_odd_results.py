@@ -62,3 +62,11 @@ def test_an_answer_that_is_no_mapping_is_shown_shortened():
 )
 def test_an_observation_that_cannot_be_read_is_named(observed: Observed, message):
     assert refusal(observed, Binding()) == message
+
+
+def test_the_fields_of_a_message_are_given_as_a_mapping_or_by_name():
+    told: list[tuple[str, dict[str, Any]]] = []
+    call = Call("test-1", "/take", "take", {}, 1.0, on_message=lambda *message: told.append(message))
+    call.publish("/arm", gap_m=0.1)
+    call.publish("/arm", {"gap_m": 0.1})
+    assert told == [("/arm", {"gap_m": 0.1})] * 2

@@ -5,6 +5,7 @@ from typing import Any
 
 import msgspec
 import pytest
+from msgspec.structs import replace
 
 from aos_protocol.errors import DeployError
 from aos_runtime.adapters import AdapterSettings, Binding
@@ -49,6 +50,9 @@ def test_a_class_of_a_module_is_told_what_is_bound_to_it(written: dict[str, str]
 def test_a_class_of_a_file_is_imported_from_its_folder(written: dict[str, str]):
     settings = settings_of(["drivers/arm.py:Arm"], written)
     assert (settings.adapter, settings.folder) == ("arm:Arm", str(Path.cwd() / "drivers"))
+    of_deploy_file = replace(settings, adapter="drivers/arm.py:Arm", folder="/robot")
+    assert of_deploy_file.class_place == ("/robot/drivers", "arm:Arm")
+    assert replace(of_deploy_file, adapter="arm:Arm").class_place == ("/robot", "arm:Arm")
 
 
 def test_started_by_hand_it_serves_what_it_has(monkeypatch, tmp_path):

@@ -49,9 +49,9 @@ class Call:
         """Tells how far it is, from 0 to 1, and what it does. From any thread, as often as you like."""
         self.on_progress(progress, text)
 
-    def publish(self, topic: str, **fields: Any) -> None:
-        """Sends a message on a topic. From any thread."""
-        self.on_message(topic, fields)
+    def publish(self, topic: str, fields: Mapping[str, Any] | None = None, /, **more: Any) -> None:
+        """Sends a message on a topic, its fields as a mapping or by name. From any thread."""
+        self.on_message(topic, {**(fields or {}), **more})
 
     @property
     def is_cancelled(self) -> bool:

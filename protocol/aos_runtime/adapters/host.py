@@ -11,7 +11,7 @@ import os
 import socket
 import sys
 import threading
-from collections.abc import AsyncIterator, Awaitable, Iterable
+from collections.abc import AsyncIterator, Awaitable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -145,12 +145,12 @@ class Host:
         if not self._failed.done():
             self._failed.set_exception(error)
 
-    def publish(self, topic: str, fields: dict[str, Any]) -> None:
-        """Sends a message on a topic. From any thread, in order.
+    def publish(self, topic: str, fields: Mapping[str, Any] | None = None, /, **more: Any) -> None:
+        """Sends a message on a topic, its fields as a mapping or by name. From any thread, in order.
 
         SkillError AOS510 if a field is nothing that the bus can carry.
         """
-        self._outbox.publish(topic, fields)
+        self._outbox.publish(topic, {**(fields or {}), **more})
 
     async def revisions(self) -> AsyncIterator[ProjectRevision]:
         """The project's documents as they stand, and each newer revision when it comes."""
@@ -195,9 +195,10 @@ class Host:
 
     async def run(self) -> None:
         """Runs until it is stopped, or cannot go on."""
-        if self._settings.folder not in sys.path:
-            sys.path.append(self._settings.folder)  # For classes that stand beside the deploy file.
-        self._adapter = load_adapter(self._settings.adapter, self)
+        folder, name = self._settings.class_place
+        if folder not in sys.path:
+            sys.path.append(folder)  # For classes that stand beside the deploy file.
+        self._adapter = load_adapter(name, self)
         self._calls.go_to(self._adapter)
         # Before anything is served: whoever calls may be gone a moment later.
         bus, keys = self._service.bus, self._service.keys

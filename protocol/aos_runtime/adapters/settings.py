@@ -1,5 +1,6 @@
 """The settings that an adapter's process is started with."""
 
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -21,7 +22,7 @@ class Binding(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class AdapterSettings(ServiceSettings, frozen=True, kw_only=True):
-    """`adapter` is `module:Class`. `options` are the adapter's own, from the deploy file in `folder`.
+    """`adapter` is `module:Class` or `FILE.py:Class`. `options` are its own, of the deploy file in `folder`.
 
     With `serves_others` it serves what it can beside `bind`, but none of `elsewhere`, which others serve. A
     call that is cancelled has to end within `cancel_s`.
@@ -36,6 +37,15 @@ class AdapterSettings(ServiceSettings, frozen=True, kw_only=True):
     elsewhere: tuple[str, ...] = ()
     seed: int = 1
     cancel_s: float = 2.0
+
+    @property
+    def class_place(self) -> tuple[str, str]:
+        """The folder that the class may stand in, and its name as `module:Class`."""
+        module, _, name = self.adapter.rpartition(":")
+        if not module.endswith(".py"):
+            return self.folder, self.adapter
+        path = Path(self.folder) / module
+        return str(path.parent), f"{path.stem}:{name}"
 
     @property
     def party(self) -> Party:

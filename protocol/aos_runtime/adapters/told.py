@@ -41,22 +41,20 @@ def settings_told(
     if missing:
         _end(f"{', '.join(missing)} is not in the environment\n{USAGE}")
     settings = _bound(environment)
-    folder = Path.cwd()
-    if module.endswith(".py"):
-        folder = (folder / module).parent
-        module = Path(module).stem
     options = {word.partition("=")[0]: _value(word.partition("=")[2]) for word in words[1:]}
-    return replace(
+    settings = replace(
         settings,
         robot=environment["AOS_ROBOT"],
         service=environment["AOS_ADAPTER"],
         endpoint=environment["AOS_ENDPOINT"],
         password_file=environment.get(PASSWORD_FILE_VARIABLE, ""),
         run_dir=str(_run_dir(settings, environment)),
-        adapter=f"{module}:{name}",
-        folder=str(folder),
+        adapter=words[0],
+        folder=str(Path.cwd()),
         options={**settings.options, **options},
     )
+    folder, adapter = settings.class_place
+    return replace(settings, adapter=adapter, folder=folder)
 
 
 def _bound(environment: Mapping[str, str]) -> AdapterSettings:
