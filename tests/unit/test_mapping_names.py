@@ -126,13 +126,19 @@ def test_what_python_allows_is_not_told(texts):
         ({"code": "try:\n    answer = reply\nexcept KeyError:\n    pass"}, "sell.am:21:14", "`reply`."),
         ({"initial": "heard"}, "sell.am:24:16", "`heard`."),
         ({"topic": "return input_.text"}, "sell.am:26:8", "`input_`. Did you mean `__input`?"),
-                ({"low_level": LOW_LEVEL.replace("import math\n", "")},
+        ({"topic": "return msg.text"}, "sell.am:26:8", "`msg`. What has come is `__input`"),
+        ({"low_level": LOW_LEVEL.replace("import math\n", "")},
          "shop.lf:6:10", "`math`."),
     ],
 )  # fmt: skip
 def test_a_name_that_nothing_gives_is_an_error_at_its_place(texts, place, rest):
     (found,) = finding_texts(**texts)
     assert found.startswith(f"{place}: error: no local variable gives {rest}")
+
+
+def test_code_of_a_topic_that_would_reach_the_next_activation_is_refused():
+    (found,) = finding_texts(topic="global count\ncount += 1\nreturn count")
+    assert found.startswith("sell.am:26:1: error: `global count` would reach the next activation")
 
 
 def test_a_message_that_is_made_by_position_is_told_before_the_run():

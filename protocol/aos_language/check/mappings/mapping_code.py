@@ -202,6 +202,10 @@ def _check_variable(
     if tree is None:
         return
     python_names.check_names(variable.code, tree, names.of_code(), findings, severity)
+    for node in (each for each in ast.walk(tree) if isinstance(each, ast.Global)):
+        message = f"`global {', '.join(node.names)}` would reach the next activation"
+        hint = f"Each activation begins anew. Between its messages `{variable.name}` keeps its value"
+        findings.error("AOS121", message, place_in(variable.code, node), hint)
     check_input_fields(variable.code, tree, findings)
     _check_ends(variable, variable.code, tree, findings)
     if isinstance(tree, ast.Module):

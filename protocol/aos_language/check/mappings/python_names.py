@@ -38,6 +38,8 @@ from aos_protocol.spelling import quoted
 
 _OF_MESSAGES = (".msg", ".srv", ".action")
 _INPUT, _PARAMETERS = "__input", "parameters"
+_MESSAGES = frozenset({"data", "message", "msg", "req", "res", "response", "result"})
+"""Names that people give to what has come."""
 _LOOKED_INTO = frozenset({"math", "json", "random", "re", "statistics", "time"})
 """Modules that are imported to see what they have: they do nothing when they are."""
 _BUILT_IN_NAMES = frozenset(dir(builtins))
@@ -293,6 +295,8 @@ def _hint(name: str, names: PythonNames) -> str:
         return "A mapping knows its local variables, not the state of the model"
     if name == _INPUT:
         return "It is there in the code of a local variable: make one of it, and name that one here"
+    if name in _MESSAGES and _INPUT in names.known:
+        return f"What has come is `{_INPUT}`"
     if name in OF_SKILL:
         return "Only rules of a skill's mapping know it"
     if name in names.parameters:
