@@ -159,6 +159,42 @@ def test_code_where_a_list_of_assignments_belongs_is_told_how_to_write_one(writt
 
 
 @pytest.mark.parametrize(
+    ("assignment", "code", "hint"),
+    [
+        ({"Code": "state__.second.x = 1;"}, "AOS102", "Did you mean `AssignmentCode`?"),
+        ({"AssignmentName": "a", "Body": ["int n = 1;"]}, "AOS102", "Missing here: `AssignmentCode`"),
+        (
+            {"IterateNextStateVars": [{"Type": "Cell", "ItemName": "each", "Code": "each.x = 1;"}]},
+            "AOS102",
+            "Missing here: `WhenConditionTrueCode`",
+        ),
+        (
+            {
+                "TempVar": {
+                    "VarName": "n",
+                    "Type": "Enum",
+                    "EnumName": "Ending",
+                    "EnumValues": ["Good", "Bad"],
+                }
+            },
+            "AOS127",
+            "It is read as enum",
+        ),
+        ({"AssignmentName": "nothing yet", "Comment": "to do"}, "", ""),
+    ],
+)
+def test_code_below_a_wrong_key_is_an_error_where_nothing_else_is_done(assignment, code, hint):
+    skill = {
+        "PlpMain": {"Project": "hall", "Name": "run", "Type": "PLP"},
+        "DynamicModel": {"NextStateAssignments": [assignment, {"AssignmentCode": "__reward = 1;"}]},
+    }
+    found = load_files(encoded({"hall.ef": ENVIRONMENT, "run.json": json.dumps(skill)})).diagnostics
+    assert [(each.code, each.hint) for each in found if each.code != "AOS114"][:1] == [(code, hint)] * bool(
+        code
+    )
+
+
+@pytest.mark.parametrize(
     ("change", "hint"),
     [
         ("ServicePath→ActionPath", "Did you mean `ServicePath`?"),

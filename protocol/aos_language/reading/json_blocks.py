@@ -52,8 +52,10 @@ def _assignment(record: Record) -> Assignment | None:
         code=record.code("AssignmentCode"),
     )
     record.ignore("Comment")
-    record.finish()
     has_effect = block.temporary or block.over_previous or block.over_next or block.code
+    if not has_effect and record.has_unread_text:
+        record.lack("AssignmentCode")
+    record.finish()
     return block if has_effect else None
 
 
@@ -64,6 +66,8 @@ def _iterations(record: Record, key: str) -> tuple[Iteration, ...]:
         condition = item.expression("ConditionCode")
         body = item.code("WhenConditionTrueCode")
         item.ignore("Comment")
+        if body is None and item.has_unread_text:
+            item.lack("WhenConditionTrueCode")
         item.finish()
         if kind and name:
             check_name(name, "a loop's item", record.findings)
@@ -80,7 +84,9 @@ def _temporary(record: Record) -> TemporaryVariable | None:
     if name is None or kind is None:
         return None
     check_name(name, "a temporary variable", findings)
-    if kind.text != "enum":
+    if kind.text.lower() == "enum" != kind.text:
+        findings.warning("AOS127", f"the kind {kind.text}", kind.span, "It is read as enum")
+    if kind.text.lower() != "enum":
         return TemporaryVariable(name.text, normal_type(kind, findings), name.span)
     if enum_name is None or not values:
         missing = "EnumName" if enum_name is None else "EnumValues"

@@ -113,10 +113,11 @@ def _types(record: Record) -> tuple[tuple[documents.EnumType, ...], tuple[docume
             kind = replace(kind, text=kind.text.lower())
         if kind.text not in _KINDS:
             message = f"a type is an enum or a compound, not {kind.text!r}"
-            record.findings.error("AOS106", message, kind.span)
+            record.findings.error("AOS106", message, kind.span, "Write `compound` for one with fields")
         if kind.text == "enum" or (values and kind.text not in _KINDS):
             if not values:
-                record.findings.error("AOS105", f"the enum {name.text} has no values", name.span)
+                hint = 'They stand in `"EnumValues": [...]`'
+                record.findings.error("AOS105", f"the enum {name.text} has no values", name.span, hint)
             enums.append(enum_type(name, values, record.findings))
         else:
             compounds.append(documents.CompoundType(name.text, tuple(f for f in fields if f), name.span))

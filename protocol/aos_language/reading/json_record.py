@@ -86,6 +86,13 @@ class Record:
         """True where nothing in it says anything: a form that was left empty."""
         return all(_is_blank(value) for _, value in self._members.values())
 
+    @property
+    def has_unread_text(self) -> bool:
+        """True where a key that nobody has asked for has text, or lines."""
+        unread = (item for name, (_, item) in self._members.items() if name not in self._known)
+        lines = (item.items if isinstance(item, JsonArray) else (item,) for item in unread)
+        return any(isinstance(line, JsonString) and line.text.strip() for each in lines for line in each)
+
     def has(self, key: str) -> bool:
         """Returns whether the key is there, whatever its value."""
         self._ask(key)
