@@ -38,7 +38,6 @@ _OPTIONS = (
     "test_plans",
     "raked_states",
     "deadlines",
-    "best_end",
 )
 _SAVINGS = ("savings", "saving_lookahead", "saving_rollouts", "later_attention")
 _SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree", "no_idling")

@@ -1,7 +1,5 @@
-// Ways to rewards that ask for many conditions at once, and to ends that can be had at once: option_search.hpp, best_end.hpp.
+// Ways to rewards that ask for many conditions at once: option_search.hpp.
 #include "aos/planning/options/option_search.hpp"
-
-#include "aos/planning/options/best_end.hpp"
 
 #include "check.hpp"
 #include "worlds.hpp"
@@ -76,29 +74,6 @@ TEST("An exit that earns nothing ends no search for what pays, and a search heed
   aos::LeafCells<TableModel> cells;
   cells.prepare(Belief::initial(random), random);
   EXPECT_EQUAL(cells.with_resting().size(), cells.size() + 1);
-}
-
-// Action 0 goes on to the next of four places, and action 1 ends the mission, which pays 8 for each place behind it, less 12.
-TEST("Before an end that can be had at once comes what makes it earn more") {
-  Problem problem = world(5, 2, 0.95);
-  problem.horizon = 20;
-  problem.variables = 1;
-  problem.values = {0, 1, 2, 3, 4};
-  problem.endings[4] = 1;
-  for (std::uint32_t place = 0; place < 4; ++place) {
-    row(problem, place, 0) = {{1.0, std::min(place + 1, 3U), 0, -0.5}};
-    row(problem, place, 1) = {{1.0, 4, 0, 8.0 * place - 12}};
-  }
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  const Belief belief = Belief::initial(random);
-  const aos::DecisionClock clock;
-  const aos::BestEnd<TableModel> search{clock, nullptr};
-  double steps = 1'000;
-  EXPECT((search.way_from(belief.particles().front().state, steps, random) == aos::Option{0, 0, 0, 1}));
-  for (std::uint32_t place = 0; place < 4; ++place) row(problem, place, 1).front().next = place;
-  TableModel::take(problem);
-  EXPECT(search.way_from(belief.particles().front().state, steps, random).empty());
 }
 
 }

@@ -3,7 +3,6 @@
 
 #include "aos/base/switches.hpp"
 #include "aos/planning/backoff.hpp"
-#include "aos/planning/options/best_end.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/option_search.hpp"
@@ -55,9 +54,8 @@ class OptionLibrary {
     List<State> ended;  // by the first option that was taken
     for (std::size_t k = 0; k < belief.size(); ++k) {
       State state = belief.states()[k];
-      const bool has_end = !counts_ && is_left(steps) && add_best_end(state, steps, random);
       std::size_t followed = counts_ ? 0 : follow(state, steps, random);
-      bool has_way = followed > 0 || has_end;
+      bool has_way = followed > 0;
       if (!has_way && is_left(steps) && add_from(state, steps, random)) {
         followed = counts_ ? 0 : follow(state, steps, random);
         has_way = counts_ || followed > 0;
@@ -80,9 +78,7 @@ class OptionLibrary {
 
   // Adds ways from the first of the states from which one is found within so many steps, however long they take.
   void find_any(const List<State>& states, double steps, Sampler& random) {
-    for (std::size_t k = 0; k < states.size() && options_.empty() && steps > 0; ++k) {
-      if (counts_ || !add_best_end(states[k], steps, random)) add_from(states[k], steps, random);
-    }
+    for (std::size_t k = 0; k < states.size() && options_.empty() && steps > 0; ++k) add_from(states[k], steps, random);
   }
 
   // Drops what was never among the best since the gains were measured, where options are many. Ways that were searched for by
@@ -130,13 +126,6 @@ class OptionLibrary {
     steps += left;
     if (options_.size() > known) past_ends_.succeed();
     else past_ends_.fail();
-  }
-
-  // Adds the way that earns most before an end that can be had at once. Returns whether there is one.
-  bool add_best_end(const State& state, double& steps, Sampler& random) {
-    if (!switches::best_end) return false;
-    const Option way = BestEnd<Model>{clock_, retries()}.way_from(state, steps, random);
-    return !way.empty() && add({way}, 1);
   }
 
   // Adds options, and what is left of each after its first actions: at most so many for each. Returns whether there were any.
