@@ -53,6 +53,15 @@ TEST("A budget that is over before the search begins still tries some action") {
   }
 }
 
+TEST("A tenth of a budget in time is left for the planner that decides, however long others have looked") {
+  constexpr aos::Budget budget{.simulations = 7, .seconds = 2, .threads = 3};
+  EXPECT_NEAR(budget.left_after(0.5).seconds, 1.5, 1e-12);
+  for (const double spent : {1.9, 2.0, 60.0}) EXPECT_NEAR(budget.left_after(spent).seconds, 0.2, 1e-12);
+  EXPECT_EQUAL(budget.left_after(60).simulations, 7u);
+  EXPECT_EQUAL(budget.left_after(60).threads, 3);
+  EXPECT_EQUAL(aos::Budget{.simulations = 7}.left_after(60).seconds, 0.0);
+}
+
 TEST("A robot that can act in hundreds of ways does not seek where to look round takes more steps than it has") {
   constexpr double steps = 20'000;
   Problem problem = world(160, 400, 0.95);

@@ -1,5 +1,5 @@
-// Expected rewards and which values are reliable: expected_rewards.hpp and exploration.hpp.
-#include "aos/planning/values/expected_rewards.hpp"
+// Expected rewards and which values are reliable: few_outcomes.hpp and exploration.hpp.
+#include "aos/planning/values/few_outcomes.hpp"
 
 #include "aos/planning/pomcp/exploration.hpp"
 #include "check.hpp"

@@ -342,6 +342,22 @@ TEST("Where places are seen, the first bounds have a plan that goes to a far one
   }
 }
 
+TEST("Where nothing is seen, a plan of the first bounds repeats one action") {
+  constexpr std::uint32_t go = 0, take = 1, far = 1, end = 2;
+  Problem problem = world(end + 1, 2, 0.9);
+  start_evenly(problem, 0, end);
+  problem.endings[end] = 1;
+  row(problem, 0, go) = {{1.0, far, 0, 0.0}};
+  row(problem, far, take) = {{1.0, end, 0, 10.0}};
+  point_based::FlatModel model = flat_model(problem);
+  model.horizon = 10;
+  point_based::OnlineSarsop search{std::move(model)};
+  EXPECT(search.move_to({{0, 0.5}, {far, 0.5}}));
+  EXPECT_NEAR(search.bounds().first, 10 / 2.0, 1e-6);  // to go first, and then to take, would return 9
+  search.improve(1'000'000, never);
+  EXPECT_NEAR(search.bounds().first, 5 + 0.81 * 5, 1e-6);  // who goes on after a try is not there yet
+}
+
 TEST("A belief of states that no start leads to is refused") {
   Problem problem = world(4, 1, 0.9);
   problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};

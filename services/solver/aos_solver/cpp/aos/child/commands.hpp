@@ -6,7 +6,6 @@
 #include "aos/child/command.hpp"
 #include "aos/child/planning_commands.hpp"
 #include "aos/child/rates.hpp"
-#include "aos/child/risk_commands.hpp"
 #include "aos/child/study_commands.hpp"
 #include "aos/child/watchdog.hpp"
 #include "aos/child/world_commands.hpp"
@@ -95,9 +94,6 @@ class Commands {
         {"endless_steps", [](Commands&, JsonWriter& json, const Command&) { write_endless_steps(json); }},
         {"rate_by_table",
          [](Commands&, JsonWriter& json, const Command& command) { write_table_rate<Model>(json, command); }},
-        {"risks", [](Commands& commands, JsonWriter& json, const Command& command) {
-           write_risks(json, command, commands.beliefs_.belief());
-         }},
         {"exact_values", by<&Commands::studies_, &Studies::exact_values>},
         {"reward_terms", by<&Commands::studies_, &Studies::reward_terms>},
         {"believe", by<&Commands::beliefs_, &Beliefs::believe>},
@@ -123,6 +119,7 @@ class Commands {
         {"ponder", by<&Commands::planning_, &Planning::ponder>},
         {"count_processor_time", by<&Commands::planning_, &Planning::count_processor_time>},
         {"reach", by<&Commands::planning_, &Planning::reach>},
+        {"risks", by<&Commands::planning_, &Planning::risks>},
         {"may_reach_goal", by<&Commands::planning_, &Planning::may_reach_goal>},
         {"list", by<&Commands::planning_, &Planning::list>},
         {"write_listing", by<&Commands::planning_, &Planning::write_listing>},

@@ -1,10 +1,10 @@
-// The commands that let an engine child decide and look ahead: searches, reachable states.
+// The commands that let an engine child decide and look ahead: searches, reachable states, the risks of constraints.
 #pragma once
 
 #include "aos/base/clock.hpp"
+#include "aos/belief/risks.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"
-#include "aos/child/goal_reach.hpp"
 #include "aos/child/listing.hpp"
 #include "aos/child/reachability.hpp"
 #include "aos/child/wording.hpp"
@@ -83,6 +83,23 @@ class PlanningCommands {
     const auto seconds = command.number<double>("seconds");
     const bool can_reach = can_reach_goal(beliefs_.belief_for(command), seconds, horizon_of<Model>(command), random);
     json.begin_object().member("is_reachable", can_reach).end_object();
+  }
+
+  // Writes, for each action, the probability of violating each constraint in the next step. `is_sampled` tells that some of the
+  // probabilities are estimates. The seed serves these estimates alone.
+  void risks(JsonWriter& json, const Command& command) const {
+    Sampler random{command.number<std::uint64_t>("seed")};
+    const std::size_t max_paths = max_enumerated_paths / std::max(Model::action_count(), 1);
+    bool is_sampled = false;
+    json.begin_object().key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      const Risks risks = risks_of(belief(), action, max_paths, random);
+      is_sampled = is_sampled || risks.is_sampled;
+      json.begin_array();
+      for (const double probability : risks.probabilities) json.value(std::clamp(probability, 0.0, 1.0));
+      json.end_array();
+    }
+    json.end_array().member("is_sampled", is_sampled).end_object();
   }
 
   // Lists the model from the current belief on. A call without a limit of states continues the listing before it.

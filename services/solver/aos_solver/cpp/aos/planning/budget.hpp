@@ -33,6 +33,11 @@ struct Budget {
     const double part = std::ceil(share * simulations);
     return {static_cast<std::uint64_t>(part), share * seconds, threads};
   }
+  // What is left of it after so many seconds: a tenth at least, so that nobody decides without a search.
+  Budget left_after(double spent_s) const {
+    constexpr double least_left = 0.1;
+    return {simulations, seconds > 0 ? std::max(seconds - spent_s, least_left * seconds) : 0, threads};
+  }
   Operations operations(int horizon) const { return simulations * operations_of_simulation(horizon); }
   static Operations operations_of_simulation(int horizon) {
     return operations_of_step * static_cast<Operations>(horizon > 0 ? horizon : 1);

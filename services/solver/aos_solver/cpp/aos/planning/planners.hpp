@@ -47,7 +47,7 @@ class Planners {
     const auto& order = order_[static_cast<std::size_t>(kind)];
     used_ = &(*std::ranges::find_if(order, [&](Planner<Model>* planner) { return planner->prepare(question, random, choosing); }))->decider();
     const auto prepared = thread_time();
-    const Question<Model> left{belief, left_of(budget, choosing.spent), horizon, barred_, is_by_name, question.is_listed};
+    const Question<Model> left{belief, budget.left_after(std::chrono::duration<double>(choosing.spent).count()), horizon, barred_, is_by_name, question.is_listed};
     const std::uint64_t simulations = used_->search(left, random, choosing.why);
     why_ = std::move(choosing.why);
     preparing_ = prepared - start - choosing.searching;
@@ -125,7 +125,6 @@ class Planners {
 
  private:
   using Order = List<Planner<Model>*>;
-  static constexpr double least_left = 0.1;  // of a budget, for the planner that decides
 
   StateSpace<Model> space_;
   MdpValues<Model> values_{space_};
@@ -143,11 +142,6 @@ class Planners {
   // Which planners are tried in turn, by what was asked for. The last ones can always decide.
   const Order order_[std::size(planner_names)] = {
       {&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &seek_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}};
-  // What is left of a budget in time after so much of it. Nobody decides without a search, also where others have looked for too long.
-  static Budget left_of(Budget budget, std::chrono::nanoseconds spent) {
-    if (budget.seconds > 0) budget.seconds = std::max(budget.seconds - std::chrono::duration<double>(spent).count(), least_left * budget.seconds);
-    return budget;
-  }
 
   Planner<Model>* used_ = &pomcp_;
   int horizon_ = 1;       // of the last search

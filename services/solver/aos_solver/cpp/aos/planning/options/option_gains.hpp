@@ -35,40 +35,27 @@ class OptionGains {
   // trying later which options can follow another.
   void measure(const auto& library, const SampledBelief<Model>& belief, double even, const OwnChanges<Model>& changes, double& steps, Sampler& random) {
     const List<State>& states = belief.states();
-    const List<Option>& options = library.options();
-    const LeafCells<Model>& cells = library.cells();
     *this = {};
-    ways_ = options;
-    is_tested_.assign(options.size(), false);
-    retries_ = library.retries();
     states_ = states.size();
-    earned_.assign(options.size() * states_, 0);
-    goes_on_.assign(options.size() * states_, 0);
-    errors_.assign(options.size() * states_, 0);
-    changed_.assign(options.size(), std::vector<bool>(cells.size()));
-    ends_.assign(options.size(), false);
-    earns_without_end_.assign(options.size(), false);
-    used_.assign(options.size(), false);
-    before_.resize(cells.size());
-    after_.resize(cells.size());
-    of_length_ = library.counts() ? share_of_length : 0;
+    before_.resize(library.cells().size());
+    after_.resize(before_.size());
     List<int> tries;  // by state
     for (const double weight : belief.weights()) tries.push_back(std::max<int>(least_tries, std::lround(least_tries * even * weight)));
     const int all_tries = std::accumulate(tries.begin(), tries.end(), 0);
-    for (std::size_t o = 0; o < options.size(); ++o) {
-      discounts_.push_back(std::pow(Model::discount, options[o].size()));
-      lengths_.push_back(static_cast<double>(options[o].size()));
+    for (const Option& way : library.options()) {
+      const List<double> none(states_);
+      const auto length = static_cast<double>(way.size());
+      KnownOption& option = options_.emplace_back(KnownOption{{none, none, std::pow(Model::discount, length), length}, way, none, std::vector<bool>(before_.size())});
       if (library.clock().is_over()) continue;
-      for (std::size_t k = 0; k < states_; ++k) take(o, k, states[k], tries[k], cells, random);
-      steps -= all_tries * static_cast<double>(options[o].size());
+      for (std::size_t k = 0; k < states_; ++k) take(option, k, states[k], tries[k], library, random);
+      steps -= all_tries * static_cast<double>(way.size());
+      option.ends = option.ends && !option.earns_without_end;
+      for (std::size_t i = 0; i < before_.size(); ++i) option.changed[i] = option.changed[i] && !changes.is_worlds(i);
     }
-    for (std::size_t o = 0; o < options.size(); ++o) ends_[o] = ends_[o] && !earns_without_end_[o];
-    for (auto& changed : changed_) {
-      for (std::size_t i = 0; i < cells.size(); ++i) changed[i] = changed[i] && !changes.is_worlds(i);
-    }
+    used_.assign(size(), false);
     note_touches();
     // Where conditions are counted, an option earns by what others have done before it.
-    sequels_.begin(options, states, earned_, retries_, library.clock(), library.counts() ? 0 : share_of_sequels * steps, random);
+    sequels_.begin(options_, states, library.retries(), library.clock(), library.counts() ? 0 : share_of_sequels * steps, random);
   }
 
   // Lets the mission be over after so many steps, whatever the robot does: what no longer fits earns nothing.
@@ -87,50 +74,41 @@ class OptionGains {
   void take_plans(List<TestPlan> plans, const List<std::size_t>& weighed) {
     const std::size_t options = size() - plans_.size();
     plans_ = std::move(plans);
-    is_tested_.assign(options, false);
-    for (const std::size_t o : weighed) is_tested_[o] = true;
-    ways_.resize(options);
-    discounts_.resize(options);
-    lengths_.resize(options);
-    changed_.resize(options);
-    earned_.resize(options * states_);
-    goes_on_.resize(options * states_);
+    options_.resize(options);
+    for (KnownOption& option : options_) option.is_tested = false;
+    for (const std::size_t o : weighed) {
+      if (o < options) options_[o].is_tested = true;
+    }
     for (const auto& [way, of, as] : plans_) {
-      ways_.push_back(way);
-      discounts_.push_back(as.discount);
-      lengths_.push_back(as.steps);
-      earned_.insert(earned_.end(), as.earned.begin(), as.earned.end());
-      goes_on_.insert(goes_on_.end(), as.goes_on.begin(), as.goes_on.end());
-      std::vector<bool> changed(changed_[of.front()].size());
+      KnownOption plan{as, way, {}, std::vector<bool>(before_.size())};
+      plan.is_tested = true;
       for (const std::size_t o : of) {
         used_[o] = true;
-        for (std::size_t i = 0; i < changed.size(); ++i) changed[i] = changed[i] || changed_[o][i];
+        for (std::size_t i = 0; i < before_.size(); ++i) plan.changed[i] = plan.changed[i] || options_[o].changed[i];
       }
-      changed_.push_back(std::move(changed));
+      options_.push_back(std::move(plan));
     }
-    ends_.resize(size());
     used_.resize(size());
-    is_tested_.resize(size(), true);
     note_touches();
   }
   // Whether a plan goes elsewhere and tests there.
-  bool is_trip(std::size_t option) const { return is_plan(option) && ways_[option].size() < ways_[tried(option)].size(); }
+  bool is_trip(std::size_t option) const { return is_plan(option) && way(option).size() < way(tried(option)).size(); }
   // The plan that goes where an option does, and tests there; without one the option itself.
   std::size_t with_tests_there(std::size_t option) const {
-    const Option there(ways_[option].begin(), ways_[option].end() - 1);
+    const Option there(way(option).begin(), way(option).end() - 1);
     const auto place = std::ranges::find(plans_, there, &TestPlan::way);
     return place != plans_.end() ? size() - plans_.size() + (place - plans_.begin()) : option;
   }
   bool is_plan(std::size_t option) const { return option + plans_.size() >= size(); }
-  const Option& way(std::size_t option) const { return ways_[option]; }
-  double length(std::size_t option) const { return lengths_[option]; }
-  bool ends(std::size_t option) const { return ends_[option]; }
-  double earned_in(std::size_t option, std::size_t state) const { return earned_[option * states_ + state]; }
-  double goes_on_in(std::size_t option, std::size_t state) const { return goes_on_[option * states_ + state]; }
+  const Option& way(std::size_t option) const { return options_[option].way; }
+  double length(std::size_t option) const { return options_[option].steps; }
+  bool ends(std::size_t option) const { return options_[option].ends; }
+  double earned_in(std::size_t option, std::size_t state) const { return options_[option].earned[state]; }
+  double goes_on_in(std::size_t option, std::size_t state) const { return options_[option].goes_on[state]; }
   // Whether both change the same variable, but for what `all` options change.
   bool touch(std::size_t option, std::size_t other, const List<std::size_t>* all = nullptr) const {
-    for (std::size_t i = 0; i < changed_[option].size(); ++i) {
-      const auto changes = [&](std::size_t o) { return changed_[o][i]; };
+    for (std::size_t i = 0; i < before_.size(); ++i) {
+      const auto changes = [&](std::size_t o) { return options_[o].changed[i]; };
       if (changes(option) && changes(other) && !(all != nullptr && std::ranges::all_of(*all, changes))) return true;
     }
     return option == other;
@@ -139,17 +117,15 @@ class OptionGains {
   // The steps that are kept for that and are not taken yet.
   double kept_steps() const { return sequels_.left(); }
 
-  std::size_t size() const { return discounts_.size(); }
-  double discount(std::size_t option) const { return discounts_[option]; }
+  std::size_t size() const { return options_.size(); }
+  double discount(std::size_t option) const { return options_[option].discount; }
   double earned(std::size_t option, const StateWeights& weights) const {
-    double sum = 0;
-    for (std::size_t k = 0; k < states_; ++k) sum += weights[k] * earned_[option * states_ + k];
-    return sum;
+    return std::inner_product(weights.begin(), weights.end(), options_[option].earned.begin(), 0.0);
   }
   // The error of what an option earns that is no plan: few tries were made, and a way that was found by conditions may be too long.
   double error(std::size_t option, const StateWeights& weights) const {
     double squares = 0;
-    for (std::size_t k = 0; k < states_ && !is_plan(option); ++k) squares += weights[k] * weights[k] * errors_[option * states_ + k];
+    for (std::size_t k = 0; k < states_ && !is_plan(option); ++k) squares += weights[k] * weights[k] * options_[option].errors[k];
     return std::sqrt(squares);
   }
   // Whether the option was among the best ones of a call since the last measurement.
@@ -168,7 +144,7 @@ class OptionGains {
   // How many steps the best options take.
   double steps_of_best(const StateWeights& weights) const {
     best(weights);
-    return std::accumulate(chosen_.begin(), chosen_.end(), 0.0, [this](double steps, std::size_t o) { return steps + lengths_[o]; });
+    return std::accumulate(chosen_.begin(), chosen_.end(), 0.0, [this](double steps, std::size_t o) { return steps + length(o); });
   }
   // What is lost by not seeing the state by options that were not weighed against tests before them.
   double untested_regret(const StateWeights& weights) const {
@@ -187,11 +163,11 @@ class OptionGains {
   // fails. Else none.
   std::size_t only_one() const {
     if (chosen_.empty()) return none;
-    return chosen_.size() == 1 || ends_[chosen_.front()] ? chosen_.front() : none;
+    return chosen_.size() == 1 || ends(chosen_.front()) ? chosen_.front() : none;
   }
   // The weights of the states after an option, as far as the mission goes on.
   StateWeights after(std::size_t option, StateWeights weights) const {
-    for (std::size_t k = 0; k < states_; ++k) weights[k] *= goes_on_[option * states_ + k];
+    for (std::size_t k = 0; k < states_; ++k) weights[k] *= options_[option].goes_on[k];
     return weights;
   }
 
@@ -213,27 +189,27 @@ class OptionGains {
     double earned;
   };
 
-  void take(std::size_t option, std::size_t k, const State& start, int tries, const LeafCells<Model>& cells, Sampler& random) {
-    cells.write(start, before_.data());
+  void take(KnownOption& option, std::size_t k, const State& start, int tries, const auto& library, Sampler& random) {
+    library.cells().write(start, before_.data());
     SampleMean earned;
     double last = 0;
     for (int i = 0; i < tries; ++i) {
       State state = start;
-      const OptionOutcome outcome = taken_option<Model>(ways_[option], state, random, retries_);
+      const OptionOutcome outcome = taken_option<Model>(option.way, state, random, library.retries());
       earned.add(outcome.earned);
       last += outcome.last / tries;
-      goes_on_[option * states_ + k] += outcome.goes_on / tries;
-      if (outcome.goes_on == 0) ends_[option] = true;
-      else if (outcome.earned > 0) earns_without_end_[option] = true;
+      option.goes_on[k] += outcome.goes_on / tries;
+      if (outcome.goes_on == 0) option.ends = true;
+      else if (outcome.earned > 0) option.earns_without_end = true;
       if (are_alike<Model>(start, state)) continue;
-      cells.write(state, after_.data());
-      for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (before_[i] != after_[i]) changed_[option][i] = true;
+      library.cells().write(state, after_.data());
+      for (std::size_t i = 0; i < before_.size(); ++i) {
+        if (before_[i] != after_[i]) option.changed[i] = true;
       }
     }
-    earned_[option * states_ + k] = earned.mean();
-    const double of_length = of_length_ * std::max(last - earned.mean(), 0.0);
-    errors_[option * states_ + k] = earned.error() * earned.error() + of_length * of_length;
+    option.earned[k] = earned.mean();
+    const double of_length = library.counts() ? share_of_length * std::max(last - earned.mean(), 0.0) : 0;
+    option.errors[k] = earned.error() * earned.error() + of_length * of_length;
   }
 
   void support_of(const StateWeights& weights) const {
@@ -247,24 +223,24 @@ class OptionGains {
   double best_of_support(std::size_t before, double left, bool is_untested = false) const {
     candidates_.clear();
     for (std::size_t o = 0; o < size(); ++o) {
-      if (is_untested && is_tested_[o]) continue;
+      if (is_untested && options_[o].is_tested) continue;
       if (before != none && cannot_follow(o, before)) continue;
       const double earned = earned_by(o);
-      if (earned > 0) candidates_.push_back({o, income<Model>(earned, lengths_[o]), earned});
+      if (earned > 0) candidates_.push_back({o, income<Model>(earned, length(o)), earned});
     }
     sort_stably(candidates_, [](const Candidate& one, const Candidate& other) { return one.income > other.income; });
     double sum = 0;
     double discount = 1;
-    if (before != none) left -= lengths_[before];
+    if (before != none) left -= length(before);
     chosen_.clear();
     for (const Candidate& candidate : candidates_) {
-      if (ends_[candidate.option] || lengths_[candidate.option] > left) continue;
+      if (ends(candidate.option) || length(candidate.option) > left) continue;
       if (std::ranges::any_of(chosen_, [&](std::size_t o) { return cannot_follow(candidate.option, o); })) continue;
       chosen_.push_back(candidate.option);
       used_[candidate.option] = true;
       sum += discount * candidate.earned;
-      discount *= discounts_[candidate.option];
-      left -= lengths_[candidate.option];
+      discount *= options_[candidate.option].discount;
+      left -= length(candidate.option);
     }
     return sum + discount * best_end(left);
   }
@@ -277,7 +253,7 @@ class OptionGains {
       std::size_t best = none;
       double most = 0;
       for (const Candidate& candidate : candidates_) {
-        if (!ends_[candidate.option] || lengths_[candidate.option] > left) continue;
+        if (!ends(candidate.option) || length(candidate.option) > left) continue;
         const double earned = i == 0 ? candidate.earned : earned_by(candidate.option);
         if (earned <= most) continue;
         most = earned;
@@ -287,15 +263,15 @@ class OptionGains {
       used_[best] = true;
       chosen_.push_back(best);
       sum += discount * most;
-      discount *= discounts_[best];
-      left -= lengths_[best];
-      for (Weighted& weighted : support_) weighted.weight *= goes_on_[best * states_ + weighted.state];
+      discount *= options_[best].discount;
+      left -= length(best);
+      for (Weighted& weighted : support_) weighted.weight *= options_[best].goes_on[weighted.state];
     }
     return sum;
   }
 
   double earned_by(std::size_t option) const {
-    const double* const earned = &earned_[option * states_];
+    const double* const earned = options_[option].earned.data();
     double sum = 0;
     for (const auto& [state, weight] : support_) sum += weight * earned[state];
     return sum;
@@ -309,27 +285,16 @@ class OptionGains {
   }
   // An option that fails to end the mission leaves the others as they were.
   bool cannot_follow(std::size_t option, std::size_t before) const {
-    return option == before || (!ends_[before] && (touches_[option * size() + before] || !sequels_.can_follow(tried(option), tried(before))));
+    return option == before || (!ends(before) && (touches_[option * size() + before] || !sequels_.can_follow(tried(option), tried(before))));
   }
   // Of a plan its first option is tried.
   std::size_t tried(std::size_t option) const { return is_plan(option) ? plans_[option + plans_.size() - size()].options.front() : option; }
 
-  List<Option> ways_;  // the plans come last
+  List<KnownOption> options_;  // the plans come last
   List<TestPlan> plans_;
   std::size_t states_ = 0;
   double lasts_ = std::numeric_limits<double>::infinity();  // steps
-  const RunningDown<Model>* retries_ = nullptr;  // actions that change nothing else are taken again
-  List<double> earned_;   // [option * states + state]
-  List<double> goes_on_;  // [option * states + state]
-  List<double> errors_;   // [option * states + state], squared
-  double of_length_ = 0;
-  List<double> discounts_;
-  List<double> lengths_;  // in steps
-  std::vector<bool> ends_;  // in some state, and earns nothing where it does not
-  std::vector<bool> earns_without_end_;
-  std::vector<bool> is_tested_;  // a plan, or an option that was weighed against tests
-  List<std::vector<bool>> changed_;  // [option][variable]
-  std::vector<bool> touches_;               // [option * options + option]
+  std::vector<bool> touches_;  // [option * options + option]
   List<std::uint64_t> before_;
   List<std::uint64_t> after_;
   mutable OptionSequels<Model> sequels_;

@@ -15,7 +15,7 @@
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 #include "aos/planning/pomcp/root_record.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
-#include "aos/planning/values/expected_rewards.hpp"
+#include "aos/planning/values/few_outcomes.hpp"
 
 namespace aos {
 

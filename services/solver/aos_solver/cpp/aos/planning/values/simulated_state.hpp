@@ -4,7 +4,7 @@
 
 #include "aos/planning/listed/step_table.hpp"
 #include "aos/planning/pomcp/observation_doubts.hpp"
-#include "aos/planning/values/expected_rewards.hpp"
+#include "aos/planning/values/few_outcomes.hpp"
 #include "aos/planning/values/mdp_values.hpp"
 #include "aos/planning/values/state_values.hpp"
 
