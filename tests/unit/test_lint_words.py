@@ -21,6 +21,28 @@ def test_lines_of_code_that_begin_with_a_word_of_the_grammar_stay_code():
     assert finding_texts(skill=skill) == []
 
 
+@pytest.mark.parametrize(
+    ("declared", "code", "hint"),
+    [
+        ("int k = 3", "AOS104", "Write `default_value: 3` on a line of its own"),
+        ("int k [5]", "AOS104", "Write `array<int, 5> k`"),
+        ("int k, m", "AOS104", "Write a line for each"),
+        ("int k;", "AOS127", "It is skipped"),
+    ],
+)
+def test_a_declaration_as_cpp_writes_it_is_told_how_sdl_does(declared, code, hint):
+    told = found(environment=f"{ENVIRONMENT}\nstate_variable: {declared}\n")
+    assert [(each.code, each.hint) for each in told if each.code != "AOS133"] == [(code, hint)]
+
+
+def test_a_word_of_no_section_in_code_is_told_as_the_label_that_cpp_takes_it_for():
+    label, condition = "goal:\n", "if (state.first.x == 2) __isGoalState = true;\n"
+    told = finding_texts(environment=f"{ENVIRONMENT}\n{label}{condition}")
+    assert any("AOS108 `goal:` is a label in C++. No section has this word" in each for each in told)
+    again = "int i = 0;\nagain:\nif (++i < 3) goto again;\n"
+    assert not any("AOS108" in each for each in finding_texts(environment=f"{ENVIRONMENT}\n{again}"))
+
+
 @pytest.mark.parametrize("comment", ["# the door is open", "    #the door's open"])
 def test_a_comment_of_python_in_cpp_is_told_what_to_write(comment):
     for code in (f"{comment}\n__moduleResponse", f"int n = 1; {comment}\n__moduleResponse"):
@@ -36,6 +58,8 @@ def test_a_comment_of_python_in_cpp_is_told_what_to_write(comment):
         (("environment", "__isGoalState", "__isGoalStat"), "__isGoalStat", "__isGoalState"),
         (("environment", "int x 0", "bool x False"), "False", "false"),
         (("skill", "__moduleResponse", "response"), "response", "__moduleResponse"),
+        (("skill", "__moduleResponse", "__observation"), "__observation", "__moduleResponse"),
+        (("environment", "__isGoalState", "__goal"), "__goal", "__isGoalState"),
         (("skill", "__moduleResponse", "_moduleResponse"), "_moduleResponse", "__moduleResponse"),
         (("skill", "__meetPrecondition", "meetPrecondition"), "meetPrecondition", "__meetPrecondition"),
     ],

@@ -104,7 +104,7 @@ class TreeReader:
 
     def _label(self, node: Node, access: Access) -> None:
         label = child_of(node, "label")
-        if mistake := mistaken_label(text_of(label)):
+        if mistake := mistaken_label(text_of(label), self._code):
             self._fault(label, *mistake)
         self._push(node.children[1:])
 

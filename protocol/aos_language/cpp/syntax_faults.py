@@ -28,7 +28,10 @@ def unexpected(node: Node) -> tuple[str, str]:
     return f"unexpected {text[0][:40]!r}", hint
 
 
-def mistaken_label(label: str) -> tuple[str, str] | None:
-    """Returns the message and the hint for a label that was meant as `default:`; no other is looked at."""
-    is_meant = nearest(label, ("default",))
-    return (f"`{label}:` is a label", "Did you mean `default:`?") if is_meant else None
+def mistaken_label(label: str, code: str) -> tuple[str, str] | None:
+    """Returns the message and the hint for a label that was meant as `default:`, or that nothing goes to."""
+    if nearest(label, ("default",)):
+        return f"`{label}:` is a label", "Did you mean `default:`?"
+    if re.search(rf"\bgoto\s+{label}\b", code) is None:
+        return f"`{label}:` is a label", "No section has this word, and no `goto` names it"
+    return None

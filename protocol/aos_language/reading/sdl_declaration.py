@@ -52,9 +52,17 @@ def read_declaration(part: Part, what: str, types: Collection[str] = ()) -> Decl
         array_mark = type_text.after(bare.end()).strip()
         rest = array_mark if array_mark.text else part.value.after(match.end()).strip()
         return Declaration(name.text, name, Text(bare[0], type_text.span), rest)
+    rest = part.value.after(match.end()).strip()
+    first, mark, _ = name.text.partition(",")
+    if mark:
+        part.findings.error("AOS104", f"`{part.word}:` declares one name", name.span, "Write a line for each")
+        name, rest = Text(first, name.span), rest.after(len(rest.text))
+    elif name.text.endswith(";"):
+        name = Text(name.text.rstrip(";"), name.span)
+        at = name.after(len(name.text)).span
+        part.findings.warning("AOS127", "a semicolon after a name", at, "It is skipped")
     check_name(name, what, part.findings)
-    kind = normal_type(type_text, part.findings)
-    return Declaration(kind, type_text, name, part.value.after(match.end()).strip())
+    return Declaration(normal_type(type_text, part.findings), type_text, name, rest)
 
 
 def read_number(part: Part) -> float | None:

@@ -174,6 +174,15 @@ def _without_learning_scale(rest: Text) -> Text:
     return Text(match.group(1), rest.span) if match else rest
 
 
+def _instead_of(rest: str, declaration: Declaration) -> str:
+    """Advice on what stands behind the name of a variable."""
+    if (sized := re.fullmatch(r"\[\s*(\d+)\s*\]", rest)) is not None:
+        return f"Write `array<{declaration.type}, {sized[1]}> {declaration.name.text}`"
+    if (value := re.fullmatch(r"=?\s*([-+\w.\"]+);?", rest)) is not None:
+        return f"Write `default_value: {value[1]}` on a line of its own"
+    return "After the name stands `[]` or `[ENUM]` for an array, or nothing; values go into `code:`"
+
+
 def _variable(section: Section, names: Sequence[str]) -> documents.StateVariable | None:
     declaration = read_declaration(section, "a variable", names)
     if declaration is None:
@@ -181,7 +190,7 @@ def _variable(section: Section, names: Sequence[str]) -> documents.StateVariable
     rest, low_level_type = _low_level_type(declaration)
     mark = _ARRAY_MARK.fullmatch(rest.text)
     if mark is None and rest.text.lower() not in _ARRAY_WORDS:
-        hint = "After the name stands `[]` or `[ENUM]` for an array, or nothing; values go into `code:`"
+        hint = _instead_of(rest.text, declaration)
         section.findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
     code, default_value = section.last("code"), section.code_of("default_value")
     if code is not None and default_value is not None:

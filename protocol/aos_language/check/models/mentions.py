@@ -17,6 +17,7 @@ from aos_protocol.spelling import nearest, quoted
 _LONE_NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*")
 _PLAIN_SPECIAL_NAMES = {name.strip("_").lower(): name for name in SPECIAL_NAMES}
 _PLAIN_SPECIAL_NAMES |= dict.fromkeys(("response", "observation"), "__moduleResponse")
+_PLAIN_SPECIAL_NAMES |= {"failure": "__isFailureState", "goal": "__isGoalState"}
 LITERAL_NAMES = frozenset({"false", "nullptr", "true"})
 _TRUTHS = frozenset({"__isFailureState", "__isGoalState", "__meetPrecondition", "__stopEvaluatingState"})
 _TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
@@ -124,7 +125,8 @@ class MentionCheck:
             return
         if is_meant:
             special = _PLAIN_SPECIAL_NAMES[root.strip("_").lower()]
-            self._findings.unknown(root, (special,), f"unknown name `{root}`", self._span(mention.root))
+            mend = Mend(span := self._span(mention.root), len(root), special)
+            self._findings.error("AOS110", f"unknown name `{root}`", span, f"Did you mean `{special}`?", mend)
         elif is_special:
             self._findings.unknown(root, known, f"unknown name `{root}`", self._span(mention.root))
         elif is_set and root in self._scope.variables and not _OWN_TYPE.search(self._cpp.code):
