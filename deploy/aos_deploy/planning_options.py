@@ -17,7 +17,7 @@ from aos_protocol.documents import MAX_HORIZON
 from aos_solver.building.build import BuildKind
 from aos_solver.child.engine import Engine, Planner
 from aos_solver.child.search import Search
-from aos_solver.offline.following import following
+from aos_solver.offline.policy import following
 
 T = TypeVar("T")
 

@@ -10,7 +10,7 @@ from models import built_bundle
 from places import BUNDLES
 from processes import COMMAND_S, finished
 
-from aos_solver.offline.solver_program import build_solver
+from aos_solver.offline.solving import build_solver
 
 AOS = Path(sys.executable).parent / "aos"
 COMMANDS = (

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from aos_protocol.errors import DeployError
 from aos_runtime.adapters import AdapterSettings, Binding
 from aos_runtime.adapters.host import load_adapter
-from aos_runtime.adapters.told import settings_told
+from aos_runtime.adapters.settings import settings_told
 
 HERE = {"AOS_ENDPOINT": "tcp/127.0.0.1:7447", "AOS_ROBOT": "fetch", "AOS_ADAPTER": "arm"}
 

@@ -10,8 +10,8 @@ import typer
 from msgspec.structs import replace
 
 from aos_deploy import planning_options
-from aos_deploy.bundles.ended_starts import remark_on_start
 from aos_deploy.bundles.files import planned_of
+from aos_deploy.bundles.reachability import remark_on_start
 from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, seconds

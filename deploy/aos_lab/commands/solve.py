@@ -35,8 +35,14 @@ from aos_solver.child.answers.models import Listed
 from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, ModelSize
 from aos_solver.offline.policy import Policy, PolicyHeader
-from aos_solver.offline.solver_program import build_solver
-from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, check_discount, precision_of
+from aos_solver.offline.solving import (
+    Bounds,
+    Solution,
+    SolvingLimits,
+    build_solver,
+    check_discount,
+    precision_of,
+)
 from aos_solver.offline.solving import solve as solve_model
 from aos_solver.offline.stopping import with_stopping
 

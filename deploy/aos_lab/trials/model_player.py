@@ -20,7 +20,7 @@ from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.rules.endings import Ending, MissionLimits
 from aos_solver.mission.simulation import simulate_mission
-from aos_solver.offline.following import following
+from aos_solver.offline.policy import following
 
 DEFAULT_SIMULATIONS = 100_000
 """The number is that of the commands, where neither simulations nor a time is given."""

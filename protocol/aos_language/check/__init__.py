@@ -14,16 +14,14 @@ from aos_language.check.mappings.stop_when import check_stop_when
 from aos_language.check.mission_parameters import check_mission_parameters
 from aos_language.check.models.decimals import check_decimals
 from aos_language.check.models.defaults import check_defaults
-from aos_language.check.models.given_observation import (
-    check_given_observation,
-    check_reported_variables,
-    names_in_given_observation,
-)
 from aos_language.check.models.model_code import check_environment_code, check_skill_code
 from aos_language.check.models.observed_numbers import (
     check_environment_reports,
+    check_given_observation,
     check_observed_numbers,
+    check_reported_variables,
     check_reports,
+    names_in_given_observation,
 )
 from aos_language.check.models.preconditions import check_precondition
 from aos_language.check.models.shared_code import check_shared_code, check_shared_names_are_used

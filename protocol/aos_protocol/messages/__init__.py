@@ -6,7 +6,6 @@ people and journals; nothing is decided by them. Unknown fields are ignored, so 
 
 from aos_protocol.messages.base import *
 from aos_protocol.messages.bundles import *
-from aos_protocol.messages.drift import *
 from aos_protocol.messages.mission import *
 from aos_protocol.messages.records import *
 from aos_protocol.messages.skills import *

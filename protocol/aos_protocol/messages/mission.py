@@ -8,8 +8,7 @@ import msgspec
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_protocol.messages.base import Message
-from aos_protocol.messages.drift import ModelDrift
-from aos_protocol.messages.records import ChosenBy, SearchMade
+from aos_protocol.messages.records import ChosenBy, ModelDrift, SearchMade
 from aos_protocol.messages.skills import Outcome
 
 

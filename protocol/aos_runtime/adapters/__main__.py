@@ -10,8 +10,7 @@ is how aos-up starts an adapter of the kind `class`.
 import sys
 
 from aos_runtime.adapters.host import serve_adapter
-from aos_runtime.adapters.settings import AdapterSettings
-from aos_runtime.adapters.told import settings_told
+from aos_runtime.adapters.settings import AdapterSettings, settings_told
 from aos_runtime.bus.config import ADAPTER_LEASE_S
 from aos_runtime.processes.lifecycle import run_service
 

@@ -23,14 +23,12 @@ from aos_protocol.errors import AosError, BusError
 from aos_protocol.messages import Message
 from aos_runtime.background import Closing
 from aos_runtime.bus.access_check import Access
-from aos_runtime.bus.answers import Answers, Handler
 from aos_runtime.bus.config import LEASE_S, client_config, opened_session
 from aos_runtime.bus.credentials import Credential
-from aos_runtime.bus.inbox import Inbox
 from aos_runtime.bus.presence import Presence, ServerWatch
-from aos_runtime.bus.question import RECEIPT, STRAYS_S, Question
+from aos_runtime.bus.question import RECEIPT, STRAYS_S, Answers, Handler, Question
 from aos_runtime.bus.recurring import Recurring
-from aos_runtime.bus.subscription import Subscription, Undeclare
+from aos_runtime.bus.subscription import Inbox, Subscription, Undeclare
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.older_python import timeout
 

@@ -9,8 +9,7 @@ from typing import Any
 import zenoh
 from zenoh.handlers import Callback
 
-from aos_runtime.bus.inbox import Inbox
-from aos_runtime.bus.subscription import Subscription
+from aos_runtime.bus.subscription import Inbox, Subscription
 
 Changes = Subscription[tuple[str, bool]]
 

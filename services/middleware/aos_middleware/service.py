@@ -11,8 +11,7 @@ from pathlib import Path
 from msgspec.structs import replace
 
 from aos_middleware.activations.activation import refused, run_activation
-from aos_middleware.activations.ledger import OutcomeLedger
-from aos_middleware.activations.surroundings import Surroundings
+from aos_middleware.activations.surroundings import OutcomeLedger, Surroundings
 from aos_middleware.emission.emit import EmittedMapping
 from aos_middleware.mappings.low_level import LowLevelValues
 from aos_middleware.mappings.monitors import Monitors

@@ -30,7 +30,7 @@ from aos_solver.mission.rules.endings import Ending, MissionLimits
 from aos_solver.mission.rules.failures import FailureRules
 from aos_solver.mission.rules.terms import Terms
 from aos_solver.mission.succession import Succession
-from aos_solver.offline.following import following
+from aos_solver.offline.policy import following
 from aos_solver.settings import Settings
 
 log = logging.getLogger(__name__)

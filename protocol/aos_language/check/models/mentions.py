@@ -5,9 +5,8 @@ from collections.abc import Iterable, Iterator, Set
 
 from aos_language.check.models.blocks import Block, titles_with
 from aos_language.check.scope import NUMBERS, Scope, ValueType
-from aos_language.cpp.absent import without_null
-from aos_language.cpp.bound import bound_paths, changes_bound
 from aos_language.cpp.keywords import COMPILER_NAMES, SPECIAL_NAMES, STATES
+from aos_language.cpp.pointers import bound_paths, changes_bound, without_null
 from aos_language.cpp.snippets import Access, Cpp, Extent, Mention
 from aos_language.document_code import absent_skills
 from aos_language.findings import Findings

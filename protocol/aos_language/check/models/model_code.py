@@ -14,9 +14,8 @@ from aos_language.check.models.blocks import (
     read_block,
     skill_blocks,
 )
-from aos_language.check.models.built_ins import BUILT_INS, check_built_in
+from aos_language.check.models.built_ins import BUILT_INS, check_built_in, check_weights
 from aos_language.check.models.mentions import LITERAL_NAMES, MentionCheck, check_objects, listing
-from aos_language.check.models.weights import check_weights
 from aos_language.check.scope import Scope
 from aos_language.check.shared_calls import check_shared_call
 from aos_language.cpp.keywords import DRAW_SOURCES, STATES

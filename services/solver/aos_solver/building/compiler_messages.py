@@ -8,8 +8,7 @@ import msgspec
 from aos_language.reading.sdl_words import GRAMMARS
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.spelling import did_you_mean
-from aos_solver.building.message_hints import hint_for, told_of_a_map
-from aos_solver.building.type_words import in_words
+from aos_solver.building.message_hints import hint_for, in_words, told_of_a_map
 from aos_solver.emission.emit import EmittedModel
 
 _PLACE = re.compile(

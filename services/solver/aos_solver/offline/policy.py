@@ -181,3 +181,19 @@ def _listed(values: Mapping[str, str], names: Iterable[str]) -> str:
 
 def _options(values: Mapping[str, str], names: Iterable[str]) -> str:
     return " ".join(f"--set {name}={values[name]}" for name in names)
+
+
+def following(search: Search, policy: Path | None, *, engine: Engine | None = None) -> Search:
+    """The search itself, or one that follows the policy file where there is one.
+
+    PlanningError where the file cannot be read, and where the policy is not for the model of this engine.
+    """
+    if policy is None:
+        return search
+    # Numbers take a tenth of a second to import, and few missions need them.
+    from aos_solver.offline.policy import Policy, PolicySearch
+
+    loaded = Policy.load(policy)
+    if engine is not None:
+        loaded.check_model(engine.model_digest, engine.description.mission_parameters)
+    return PolicySearch(policy=loaded, **msgspec.structs.asdict(search))

@@ -29,7 +29,7 @@ from aos_solver.mission.models.takeover import RunningModel, Successor
 from aos_solver.mission.records.stretches import Stretch, after, models_before
 from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.rules.failures import FailureRules, Failures
-from aos_solver.offline.following import following
+from aos_solver.offline.policy import following
 from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission
 

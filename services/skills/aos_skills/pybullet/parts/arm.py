@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pybullet
 
-from aos_skills.pybullet.parts.client import connect
-from aos_skills.pybullet.parts.scene import STEP_S, Scene, Vector
+from aos_skills.pybullet.parts.scene import STEP_S, Scene, Vector, connect
 from aos_skills.pybullet.parts.urdf import bare_arm_urdf, urdf_file
 
 _JOINT_COUNT = 7

@@ -1,12 +1,14 @@
-"""Simulated time and the bodies in it."""
+"""Simulated time and the bodies in it, behind a connection to Bullet that leaves standard output alone."""
 
-from collections.abc import Callable
+import ctypes
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pybullet
 import pybullet_data
-
-from aos_skills.pybullet.parts.client import connect
+from pybullet_utils.bullet_client import BulletClient
 
 STEP_S = 1 / 240
 
@@ -78,3 +80,30 @@ class Scene:
             at,
         )
         return body
+
+
+def connect() -> BulletClient:
+    """A simulation in this process, with no window.
+
+    Bullet prints its own arguments, from C, whenever it connects; standard output is shut for that long.
+    Standard error, where Bullet's warnings go, stays open.
+    """
+    with _silent_stdout():
+        return BulletClient(connection_mode=pybullet.DIRECT)
+
+
+@contextmanager
+def _silent_stdout() -> Iterator[None]:
+    """C buffers what it prints, so it is flushed on either side."""
+    flush_c = ctypes.CDLL(None).fflush
+    flush_c(None)
+    stdout = os.dup(1)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        yield
+        flush_c(None)
+    finally:
+        os.dup2(stdout, 1)
+        os.close(stdout)
+        os.close(nowhere)

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping
 import msgspec
 from msgspec.structs import replace
 
-from aos_language.cpp.absent import without_null
 from aos_language.cpp.keywords import STATES
+from aos_language.cpp.pointers import without_null
 from aos_language.cpp.snippets import read_cpp_expression
 from aos_language.document_code import absent_skills, shared_code_of, snippets_of
 from aos_language.findings import Findings

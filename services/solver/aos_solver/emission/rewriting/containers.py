@@ -7,8 +7,8 @@ block of code fills with constants anew in each run costs more than the rest of 
 import re
 from collections.abc import Iterator
 
-from aos_language.cpp.bound import path_bound
 from aos_language.cpp.keywords import DRAW_SOURCES, STATES
+from aos_language.cpp.pointers import path_bound
 from aos_language.cpp.snippets import (
     Access,
     Call,

@@ -12,9 +12,9 @@ import re
 from collections.abc import Iterator
 from itertools import groupby
 
-from aos_language.cpp.bound import path_bound
 from aos_language.cpp.facts import Element
 from aos_language.cpp.keywords import DRAW_SOURCES, STATES
+from aos_language.cpp.pointers import path_bound
 from aos_language.cpp.snippets import Cpp, DeclarationKind, strip_comments
 
 _TYPE = re.compile(r"(?:^|[;{}(])\s*([A-Za-z_][\w:]*(?:\s+[A-Za-z_][\w:]*)*)\s*[&*]\s*$")

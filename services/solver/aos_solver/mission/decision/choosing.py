@@ -10,8 +10,7 @@ from aos_protocol.unavailable import told_together
 from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.mission.control.steering import Asked
-from aos_solver.mission.decision.choices import Choice, Ended, Held, Refused
-from aos_solver.mission.decision.made_searches import MadeSearches
+from aos_solver.mission.decision.choices import Choice, Ended, Held, MadeSearches, Refused
 from aos_solver.mission.decision.passed_over import EndlessLoops, PassedOver
 from aos_solver.mission.decision.risk import RiskBudget
 from aos_solver.mission.models.takeover import RunningModel

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from aos_skills.pybullet.parts.follower import Following, follow
-from aos_skills.pybullet.parts.route import Point
+from aos_skills.pybullet.parts.route import Following, Point, follow
 from aos_skills.pybullet.worlds.turtlebot.world import Turtlebot
 
 MAX_PLANS = 12

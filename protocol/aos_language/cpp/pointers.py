@@ -1,10 +1,13 @@
-"""Code as it is where some pointers are null: without what only runs where they are not."""
+"""References and pointers of code: the parts of a state that they stand for, and code where some are null."""
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterator
 
 from tree_sitter import Node
 
+from aos_language.cpp.facts import Access, Cpp, Declaration, Mention
+from aos_language.cpp.keywords import STATES
 from aos_language.cpp.nodes import below, child_of, field_of, operator_of, text_of
 from aos_language.cpp.tree import tree_of
 
@@ -91,3 +94,39 @@ def _truth(node: Node, null: Collection[str]) -> bool | None:
                 truths = {_truth(left, null), _truth(right, null)}
                 return settled if settled in truths else None if None in truths else not settled
     return None
+
+
+_LOOP_COLON = re.compile(r"\s*:\s*")
+
+
+def path_bound(cpp: Cpp, declaration: Declaration) -> tuple[str, ...]:
+    """Returns the path of the state that a reference or pointer is bound to, also in a loop; else nothing."""
+    initial = declaration.initial
+    loop = _LOOP_COLON.match(cpp.code, declaration.extent.end) if initial is None else None
+    start = initial.start if initial is not None else loop.end() if loop is not None else None
+    if start is not None and initial is not None and declaration.type.endswith("*"):
+        start = start + 1 if cpp.code.startswith("&", start) else None
+    begun = (m for m in cpp.mentions if m.extent.start == start and m.path[0] in STATES and not m.method)
+    return next((m.path for m in begun if initial is None or m.extent.end == initial.end), ())
+
+
+def bound_paths(cpp: Cpp) -> dict[str, tuple[str, ...]]:
+    """Returns what each reference or pointer stands for that is declared once and is not const."""
+    names = Counter(declaration.name for declaration in cpp.declarations)
+    return {
+        place.name: path
+        for place in cpp.declarations
+        if names[place.name] == 1 and re.fullmatch(r"(?!const).*[&*]", place.type)
+        if (path := path_bound(cpp, place))
+    }
+
+
+def changes_bound(cpp: Cpp, mention: Mention) -> bool:
+    """Returns whether a mention of such a name changes what it stands for, and not only a pointer."""
+    if mention.access not in (Access.WRITE, Access.UPDATE):
+        return False
+    own = next(each for each in cpp.declarations if each.name == mention.path[0])
+    if own.type.endswith("&"):
+        return True
+    is_moved = any(m.path == (own.name,) and m.access is not Access.READ for m in cpp.mentions)
+    return len(mention.path) > 1 and not is_moved
