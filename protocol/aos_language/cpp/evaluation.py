@@ -18,7 +18,7 @@ from aos_language.cpp.facts import (
     READING_METHODS,
 )
 from aos_language.cpp.flow import is_draw, names_in
-from aos_language.cpp.nodes import below, field_of, operator_of, text_of
+from aos_language.cpp.nodes import below, field_of, field_text, operator_of, parts_of, text_of
 
 _READING_METHODS = (CHANGING_METHODS | HANDLE_METHODS | READING_METHODS) - EXCHANGING_METHODS
 _NO_READS = frozenset({
@@ -91,14 +91,12 @@ class Evaluation:
 
     def _call(self, node: Node, state: State) -> None:
         function = field_of(node, "function")
-        arguments = field_of(node, "arguments")
-        name = text_of(function).split("<")[0].removeprefix("std::") if function is not None else ""
+        name = field_text(node, "function").split("<")[0].removeprefix("std::")
         is_reading = name in READING_FUNCTIONS or is_draw(node)
         if function is not None and function.type == "field_expression":
             self.expression(field_of(function, "argument"), state)
-            method = field_of(function, "field")
-            is_reading |= method is not None and text_of(method) in _READING_METHODS
-        for argument in arguments.named_children if arguments is not None else ():
+            is_reading |= field_text(function, "field") in _READING_METHODS
+        for argument in parts_of(node, "arguments"):
             if argument.type == "identifier" and not is_reading:
                 state.set(text_of(argument))  # It may be taken by reference.
             else:

@@ -20,7 +20,15 @@ from aos_language.cpp.facts import (
     Cpp,
 )
 from aos_language.cpp.keywords import STATES
-from aos_language.cpp.nodes import below, field_of, picks_member, text_of
+from aos_language.cpp.nodes import (
+    below,
+    field_of,
+    field_text,
+    parts_of,
+    picks_member,
+    text_of,
+    without_brackets,
+)
 from aos_language.cpp.tree import tree_of
 
 
@@ -261,8 +269,7 @@ class _Reading:
         elif node.type == "update_expression":
             self._change(node, field_of(node, "argument"), [], control)
         elif (target := _changed_by_method(node)) is not None:
-            arguments = field_of(node, "arguments")
-            self._change(node, target, arguments.named_children if arguments is not None else [], control)
+            self._change(node, target, parts_of(node, "arguments"), control)
         elif _has_effects(node, self._functions):
             self.used |= control | names_in(node)
 
@@ -332,8 +339,7 @@ def _names_in(node: Node) -> Iterator[Name]:
 def is_draw(node: Node) -> bool:
     """Returns whether a piece of the tree is a call such as `AOS.Bernoulli(p)` or
     `AOSUtils::SampleDiscrete(w)`."""
-    function = field_of(node, "function") if node.type == "call_expression" else None
-    return function is not None and _DRAW.fullmatch(text_of(function)) is not None
+    return node.type == "call_expression" and _DRAW.fullmatch(field_text(node, "function")) is not None
 
 
 def _name_of_draw(start_byte: int) -> Name:
@@ -344,9 +350,7 @@ def _of_state(node: Node) -> Name | None:
     """The variable behind `state.x`."""
     if picks_member(node):
         return None
-    argument, field = field_of(node, "argument"), field_of(node, "field")
-    while argument is not None and argument.type == "parenthesized_expression":
-        argument = argument.named_children[0] if argument.named_child_count == 1 else None
+    argument, field = without_brackets(field_of(node, "argument")), field_of(node, "field")
     if argument is None or field is None or argument.type != "identifier" or text_of(argument) not in STATES:
         return None
     return Name(text_of(field), is_of_state=True)
@@ -381,9 +385,8 @@ def _root(node: Node | None) -> Name | None:
 
 def _method_of(call: Node) -> str:
     """The name of the method that a call calls; empty where it calls something else."""
-    function = field_of(call, "function") if call.type == "call_expression" else None
-    field = field_of(function, "field") if function is not None else None
-    return text_of(field).split("<")[0] if field is not None else ""
+    is_call = call.type == "call_expression"
+    return field_text(field_of(call, "function"), "field").split("<")[0] if is_call else ""
 
 
 def _changed_by_method(node: Node) -> Node | None:
@@ -391,8 +394,7 @@ def _changed_by_method(node: Node) -> Node | None:
     method = _method_of(node)
     if method not in CHANGING_METHODS - EXCHANGING_METHODS:
         return None
-    function = field_of(node, "function")
-    return field_of(function, "argument") if function is not None else None
+    return field_of(field_of(node, "function"), "argument")
 
 
 def _has_effects(node: Node, functions: _Functions) -> bool:
@@ -428,7 +430,7 @@ def _may_change(call: Node, functions: _Functions) -> bool:
 def _gives_handle(node: Node) -> bool:
     """Returns whether the value of an expression may be an iterator or a pointer."""
     for part in below(node):
-        field = field_of(part, "field") if part.type == "field_expression" else None
-        if field is not None and (text_of(field) in HANDLE_METHODS or text_of(field).endswith("Objects")):
+        name = field_text(part, "field") if part.type == "field_expression" else ""
+        if name in HANDLE_METHODS or name.endswith("Objects"):
             return True
     return False

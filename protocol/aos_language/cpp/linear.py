@@ -10,7 +10,7 @@ from tree_sitter import Node
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import is_draw
-from aos_language.cpp.nodes import below, field_of, operator_of, text_of
+from aos_language.cpp.nodes import below, field_of, field_text, operator_of, text_of
 from aos_language.cpp.tree import tree_of
 
 _CONTINUOUS = ("SampleNormal", "SampleUniform")
@@ -106,7 +106,7 @@ class _Linear:
         """Returns whether it declares a plain number, once, that never changes and is passed on by each
         use."""
         name, declaration = field_of(declarator, "declarator"), declarator.parent
-        kind = field_of(declaration, "type") if declaration is not None else None
+        kind = field_of(declaration, "type")
         if name is None or name.type != "identifier" or kind is None or text_of(kind) not in _DOUBLE:
             return False
         text = text_of(name)
@@ -131,5 +131,5 @@ def _identifiers(node: Node | None) -> Iterator[str]:
 
 def _function(draw: Node) -> str:
     """The last name of what is called."""
-    function = field_of(draw, "function")
-    return re.findall(r"\w+", text_of(function))[-1] if function is not None else ""
+    name: str = re.findall(r"\w+", field_text(draw, "function"))[-1]
+    return name

@@ -12,12 +12,25 @@ def text_of(node: Node) -> str:
     return (node.text or b"").decode("utf-8", "replace")
 
 
-def field_of(node: Node, field: str) -> Node | None:
+def field_of(node: Node | None, field: str) -> Node | None:
     """The part of a node in a field, such as `left`; None where it has none."""
-    return node.child_by_field_name(field)
+    return node.child_by_field_name(field) if node is not None else None
 
 
-def field_text(node: Node, field: str) -> str:
+def parts_of(node: Node | None, field: str) -> Sequence[Node]:
+    """The named parts of what a node has in a field, such as its `arguments`."""
+    part = field_of(node, field)
+    return part.named_children if part is not None else ()
+
+
+def without_brackets(node: Node | None) -> Node | None:
+    """The one expression inside all brackets around it; None where these have several parts, or none."""
+    while node is not None and node.type in ("condition_clause", "parenthesized_expression"):
+        node = node.named_children[0] if node.named_child_count == 1 else None
+    return node
+
+
+def field_text(node: Node | None, field: str) -> str:
     """The text of a node's field; empty where it has none."""
     part = field_of(node, field)
     return text_of(part) if part is not None else ""

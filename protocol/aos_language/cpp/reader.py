@@ -25,6 +25,7 @@ from aos_language.cpp.nodes import (
     field_of,
     names_of,
     operator_of,
+    parts_of,
     picks_member,
     text_of,
 )
@@ -310,8 +311,7 @@ class TreeReader:
             self._push([name])
             extent = self.extent(name)
             self.declarations.append(Declaration(enum_name, "enum", DeclarationKind.ENUM, extent))
-        body = field_of(node, "body")
-        for enumerator in body.named_children if body is not None else []:
+        for enumerator in parts_of(node, "body"):
             value_name = field_of(enumerator, "name")
             if enumerator.type == "enumerator" and value_name is not None:
                 extent = self.extent(value_name)

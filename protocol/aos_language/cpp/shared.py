@@ -15,7 +15,7 @@ from tree_sitter import Node
 
 from aos_language.cpp.facts import READING_FUNCTIONS
 from aos_language.cpp.keywords import DRAW_SOURCES
-from aos_language.cpp.nodes import Places, below, field_of, field_text, text_of
+from aos_language.cpp.nodes import Places, below, field_of, field_text, parts_of, text_of
 from aos_language.cpp.snippets import Cpp, read_cpp_declarations
 from aos_language.cpp.tokens import Extent
 from aos_language.cpp.tree import tree_of
@@ -232,8 +232,7 @@ class _Reading:
     def _enum(self, node: Node) -> None:
         if (name := field_of(node, "name")) is not None:
             self._add(node, name, "enum")
-        body = field_of(node, "body")
-        for value in body.named_children if body is not None else []:
+        for value in parts_of(node, "body"):
             if (name := field_of(value, "name")) is not None:
                 self._add(node, name, "enum value")
 
@@ -250,12 +249,9 @@ class _Reading:
     def _function(self, node: Node) -> None:
         function = next(part for part in below(node) if part.type == "function_definition")
         declarators = [*_declarators(field_of(function, "declarator"))]
-        header = next(
-            (declarator for declarator in declarators if declarator.type == "function_declarator"), None
-        )
+        header = next((each for each in declarators if each.type == "function_declarator"), None)
         body = field_of(function, "body")
-        name = field_of(header, "declarator") if header is not None else None
-        parameters = field_of(header, "parameters") if header is not None else None
+        name, parameters = field_of(header, "declarator"), field_of(header, "parameters")
         if body is None or name is None or parameters is None or name.type != "identifier":
             self._misuse(node, "this is no function", _HINT)
             return

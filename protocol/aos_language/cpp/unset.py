@@ -12,7 +12,16 @@ from tree_sitter import Node
 from aos_language.cpp.evaluation import Evaluation, State, Ways, merged
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import names_in
-from aos_language.cpp.nodes import Places, below, field_of, field_text, operator_of, text_of
+from aos_language.cpp.nodes import (
+    Places,
+    below,
+    field_of,
+    field_text,
+    operator_of,
+    parts_of,
+    text_of,
+    without_brackets,
+)
 from aos_language.cpp.tokens import Extent
 from aos_language.cpp.tree import tree_of
 
@@ -190,11 +199,10 @@ class _Walk(Evaluation):
 
     def _switch(self, node: Node, state: State) -> State:
         named = self.condition(field_of(node, "condition"), state)
-        body = field_of(node, "body")
         self._loops.append(_Loop(is_switch=True))
         self.conditions.append(named)
         current = State(ended=True)
-        for case in body.named_children if body is not None else ():
+        for case in parts_of(node, "body"):
             if case.type != "case_statement":
                 current = self.statement(case, current)
                 continue
@@ -281,15 +289,12 @@ def _is_last_case(node: Node) -> bool:
 
 def _asked(node: Node) -> str:
     """Returns the `x` of `if (x == A)`; empty for another condition."""
-    condition = field_of(node, "condition")
-    while condition is not None and condition.type in ("condition_clause", "parenthesized_expression"):
-        condition = condition.named_children[0] if condition.named_child_count == 1 else None
+    condition = without_brackets(field_of(node, "condition"))
     if condition is None or condition.type != "binary_expression" or operator_of(condition) != "==":
         return ""
     return field_text(condition, "left")
 
 
 def _is_true(node: Node | None) -> bool:
-    while node is not None and node.type in ("condition_clause", "parenthesized_expression"):
-        node = node.named_children[0] if node.named_child_count == 1 else None
-    return node is not None and text_of(node) in ("true", "1")
+    value = without_brackets(node)
+    return value is not None and text_of(value) in ("true", "1")
