@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from aos_lab.formats.problem_files import read_problem
 from aos_solver.mission.rules.endings import Ending
 from aos_solver.mission.simulation import SimulatedRun
-from aos_solver.offline.explicit_model import Floats, Integers
+from aos_solver.offline.explicit_model import Floats, Integers, over_states, with_stopping
 from aos_solver.offline.policy import Policy
-from aos_solver.offline.stopping import over_states, with_stopping
 
 _LEFT_OUT = 1e-4
 """A mission without a step limit ends where a reward would count less than this share of a first one."""

@@ -22,10 +22,9 @@ from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 from aos_solver.offline.alpha_vectors import AlphaVectors
 from aos_solver.offline.enumeration import Enumeration, enumerate_model
-from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
+from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief, with_stopping
 from aos_solver.offline.policy import Policy, PolicyHeader, PolicySearch
 from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, solve
-from aos_solver.offline.stopping import with_stopping
 
 QUICK = SolvingLimits(precision=1e-3, cpu_s=1)
 

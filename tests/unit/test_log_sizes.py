@@ -1,5 +1,5 @@
-from aos_deploy.processes.log_sizes import shorten
 from aos_deploy.processes.ready import _Printed
+from aos_deploy.processes.start import shorten
 
 
 def test_a_log_that_is_too_long_is_cut_to_its_end_and_its_writer_goes_on(tmp_path):

@@ -11,7 +11,7 @@ from json_values import plain
 from places import DATA, DEPLOY, ROOT
 from ruamel.yaml import YAML
 
-from aos_deploy.deployment.schemas import SCHEMAS
+from aos_deploy.commands.schema import SCHEMAS
 from aos_language.findings import Findings
 from aos_language.load import load_files
 from aos_language.reading.json_document import read_json

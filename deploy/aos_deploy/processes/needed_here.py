@@ -9,10 +9,9 @@ from pathlib import Path
 from aos_deploy.deployment.adapter_kinds import check_installed
 from aos_deploy.deployment.adapters import SPANS
 from aos_deploy.deployment.reading import Deployment
-from aos_deploy.processes.log_sizes import LOG_BYTES
 from aos_deploy.processes.program import programs_of_deployment
 from aos_deploy.processes.remote import check_ssh
-from aos_deploy.processes.start import check_command
+from aos_deploy.processes.start import LOG_BYTES, check_command
 from aos_deploy.spans.otlp import check_otel_installed
 from aos_protocol.errors import DeployError
 from aos_runtime.sandbox.support import require_sandbox, trust_documents

@@ -33,13 +33,12 @@ from aos_deploy.processes.consequence import (
     status_text,
     told_end,
 )
-from aos_deploy.processes.log_sizes import keep_logs_short, shorten_all
 from aos_deploy.processes.passes import Outsider, Passes
 from aos_deploy.processes.program import Program
 from aos_deploy.processes.ready import Before, before_start, check_port_is_free, until_seen_ready
 from aos_deploy.processes.remote import is_lost, was_frozen
 from aos_deploy.processes.silences import Returns, Silences
-from aos_deploy.processes.start import ROUTER_MODULE, start_process
+from aos_deploy.processes.start import ROUTER_MODULE, keep_logs_short, shorten_all, start_process
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.record import ProcessEnd
 from aos_protocol.access import OPERATOR, Party

@@ -33,7 +33,7 @@ from aos_protocol.documents import MissionValue
 from aos_protocol.errors import DeployError, PlanningError
 from aos_solver.child.answers.models import Listed
 from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
-from aos_solver.offline.explicit_model import ExplicitModel, ModelSize
+from aos_solver.offline.explicit_model import ExplicitModel, ModelSize, with_stopping
 from aos_solver.offline.policy import Policy, PolicyHeader
 from aos_solver.offline.solving import (
     Bounds,
@@ -44,7 +44,6 @@ from aos_solver.offline.solving import (
     precision_of,
 )
 from aos_solver.offline.solving import solve as solve_model
-from aos_solver.offline.stopping import with_stopping
 
 _TOLD_NAMES = 12
 _GRAPH_ENDINGS = (".dot", ".svg")

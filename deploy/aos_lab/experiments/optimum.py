@@ -12,8 +12,8 @@ from aos_lab.trials.trial import Trial
 from aos_solver.child.engine import Engine
 from aos_solver.mission.rules.endings import Ending
 from aos_solver.offline.enumeration import enumerate_model
+from aos_solver.offline.explicit_model import with_stopping
 from aos_solver.offline.solving import SolvingLimits, solve
-from aos_solver.offline.stopping import with_stopping
 
 CPU_S = 15.0
 

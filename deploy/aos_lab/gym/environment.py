@@ -8,9 +8,8 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from aos_lab.gym.number_columns import Numbers
 from aos_lab.gym.spaces import Observation, observation_space, observations
-from aos_lab.gym.worlds import ENDINGS, HiddenWorlds, check_at_least_one
+from aos_lab.gym.worlds import ENDINGS, HiddenWorlds, Numbers, check_at_least_one
 
 MAX_SEED = 2**63 - 1
 

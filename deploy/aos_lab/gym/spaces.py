@@ -12,8 +12,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from aos_lab.gym.number_columns import Numbers
-from aos_lab.gym.worlds import TEXT_BYTES, HiddenWorlds, as_bytes
+from aos_lab.gym.worlds import TEXT_BYTES, HiddenWorlds, Numbers, as_bytes
 
 Observation = np.int64 | NDArray[np.uint8] | dict[str, Any]
 

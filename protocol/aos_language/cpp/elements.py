@@ -2,7 +2,7 @@
 
 from tree_sitter import Node
 
-from aos_language.cpp.nodes import child_of, field_of, names_of, text_of
+from aos_language.cpp.tree import child_of, field_of, names_of, text_of
 
 _OF_FILLED = frozenset({"back", "front", "pop", "pop_back", "pop_front", "top"})
 _BEGINNINGS = frozenset({"begin", "cbegin", "crbegin", "rbegin"})

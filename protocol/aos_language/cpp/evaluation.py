@@ -18,7 +18,7 @@ from aos_language.cpp.facts import (
     READING_METHODS,
 )
 from aos_language.cpp.flow import is_draw, names_in
-from aos_language.cpp.nodes import below, field_of, field_text, operator_of, parts_of, text_of
+from aos_language.cpp.tree import below, field_of, field_text, operator_of, parts_of, text_of
 
 _READING_METHODS = (CHANGING_METHODS | HANDLE_METHODS | READING_METHODS) - EXCHANGING_METHODS
 _NO_READS = frozenset({

@@ -20,16 +20,16 @@ from aos_language.cpp.facts import (
     Cpp,
 )
 from aos_language.cpp.keywords import STATES
-from aos_language.cpp.nodes import (
+from aos_language.cpp.tree import (
     below,
     field_of,
     field_text,
     parts_of,
     picks_member,
     text_of,
+    tree_of,
     without_brackets,
 )
-from aos_language.cpp.tree import tree_of
 
 
 class Name(msgspec.Struct, frozen=True):

@@ -13,9 +13,8 @@ from collections.abc import Iterator, Sequence
 from tree_sitter import Node
 
 from aos_language.cpp.facts import Cpp
-from aos_language.cpp.nodes import below, field_of, field_text, operator_of, text_of
 from aos_language.cpp.tokens import Extent
-from aos_language.cpp.tree import tree_of
+from aos_language.cpp.tree import below, field_of, field_text, operator_of, text_of, tree_of
 
 Edits = tuple[tuple[Extent | int, str], ...]
 

@@ -10,8 +10,7 @@ from tree_sitter import Node
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import is_draw
-from aos_language.cpp.nodes import below, field_of, field_text, operator_of, text_of
-from aos_language.cpp.tree import tree_of
+from aos_language.cpp.tree import below, field_of, field_text, operator_of, text_of, tree_of
 
 _CONTINUOUS = ("SampleNormal", "SampleUniform")
 _DOUBLE = ("double", "auto")

@@ -14,8 +14,7 @@ from tree_sitter import Node
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.keywords import DRAW_SOURCES
-from aos_language.cpp.nodes import Places, below, field_of, text_of
-from aos_language.cpp.tree import tree_of
+from aos_language.cpp.tree import Places, below, field_of, text_of, tree_of
 
 
 class Scope(msgspec.Struct, frozen=True):

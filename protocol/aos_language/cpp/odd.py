@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from tree_sitter import Node
 
-from aos_language.cpp.nodes import below, child_of, field_of, field_text, operator_of, text_of
+from aos_language.cpp.tree import below, child_of, field_of, field_text, operator_of, text_of
 
 _WHOLE = re.compile(r"0|[1-9][0-9]*")
 _DECIMAL = re.compile(r"0?\.\d*[1-9]\d*")

@@ -8,8 +8,7 @@ from tree_sitter import Node
 
 from aos_language.cpp.facts import Access, Cpp, Declaration, Mention
 from aos_language.cpp.keywords import STATES
-from aos_language.cpp.nodes import below, child_of, field_of, operator_of, text_of
-from aos_language.cpp.tree import tree_of
+from aos_language.cpp.tree import below, child_of, field_of, operator_of, text_of, tree_of
 
 _BEFORE = "void f() {"
 _NULLS = ("NULL", "nullptr", "0")

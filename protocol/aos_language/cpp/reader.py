@@ -18,7 +18,10 @@ from aos_language.cpp.facts import (
     Mention,
     OddPart,
 )
-from aos_language.cpp.nodes import (
+from aos_language.cpp.odd import idle_parts, is_condition, is_turned, odd_parts
+from aos_language.cpp.syntax_faults import mistaken_label, unexpected
+from aos_language.cpp.tokens import Extent, Fault, FaultKind, Tokens
+from aos_language.cpp.tree import (
     Places,
     below,
     child_of,
@@ -29,9 +32,6 @@ from aos_language.cpp.nodes import (
     picks_member,
     text_of,
 )
-from aos_language.cpp.odd import idle_parts, is_condition, is_turned, odd_parts
-from aos_language.cpp.syntax_faults import mistaken_label, unexpected
-from aos_language.cpp.tokens import Extent, Fault, FaultKind, Tokens
 
 _CHANGING_FUNCTIONS = frozenset({"Initialize", "SetNull", "Uninitialize", "exchange", "iota", "swap", "tie"})
 

@@ -15,10 +15,9 @@ from tree_sitter import Node
 
 from aos_language.cpp.facts import READING_FUNCTIONS
 from aos_language.cpp.keywords import DRAW_SOURCES
-from aos_language.cpp.nodes import Places, below, field_of, field_text, parts_of, text_of
 from aos_language.cpp.snippets import Cpp, read_cpp_declarations
 from aos_language.cpp.tokens import Extent
-from aos_language.cpp.tree import tree_of
+from aos_language.cpp.tree import Places, below, field_of, field_text, parts_of, text_of, tree_of
 
 
 class SharedName(msgspec.Struct, frozen=True):

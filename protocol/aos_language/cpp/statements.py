@@ -8,8 +8,7 @@ from collections.abc import Callable
 import msgspec
 from tree_sitter import Node
 
-from aos_language.cpp.nodes import field_of
-from aos_language.cpp.tree import tree_of
+from aos_language.cpp.tree import field_of, tree_of
 
 
 class Statement(msgspec.Struct, frozen=True):

@@ -4,7 +4,7 @@ import re
 
 from tree_sitter import Node
 
-from aos_language.cpp.nodes import text_of
+from aos_language.cpp.tree import text_of
 from aos_protocol.spelling import nearest
 
 _OTHER_LANGUAGES = (

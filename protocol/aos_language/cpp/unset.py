@@ -12,7 +12,8 @@ from tree_sitter import Node
 from aos_language.cpp.evaluation import Evaluation, State, Ways, merged
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import names_in
-from aos_language.cpp.nodes import (
+from aos_language.cpp.tokens import Extent
+from aos_language.cpp.tree import (
     Places,
     below,
     field_of,
@@ -20,10 +21,9 @@ from aos_language.cpp.nodes import (
     operator_of,
     parts_of,
     text_of,
+    tree_of,
     without_brackets,
 )
-from aos_language.cpp.tokens import Extent
-from aos_language.cpp.tree import tree_of
 
 
 class Unset(msgspec.Struct, frozen=True):

@@ -7,9 +7,8 @@ from tree_sitter import Node
 
 from aos_language.cpp.facts import Cpp, DeclarationKind
 from aos_language.cpp.keywords import STATES
-from aos_language.cpp.nodes import below, field_of, operator_of, text_of
 from aos_language.cpp.tokens import Extent
-from aos_language.cpp.tree import tree_of
+from aos_language.cpp.tree import below, field_of, operator_of, text_of, tree_of
 
 _VALUES = {
     "parenthesized_expression": (0,),

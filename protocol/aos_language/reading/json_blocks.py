@@ -4,10 +4,10 @@ import re
 
 from msgspec.structs import replace
 
-from aos_language.reading.code import joined
 from aos_language.reading.document import check_name, enum_type, normal_type
 from aos_language.reading.glued_else import with_else_apart
 from aos_language.reading.json_record import Record
+from aos_language.reading.source import joined
 from aos_protocol.documents import Assignment, Iteration, TemporaryVariable
 
 _FORM = '{"AssignmentCode": "..."}'

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 
 from msgspec.structs import replace
 
-from aos_language.reading.code import dedented, guarded
 from aos_language.reading.document import array_type, check_name, enum_type, normal_type
 from aos_language.reading.json_blocks import read_block
 from aos_language.reading.json_record import Record
+from aos_language.reading.source import dedented, guarded
 from aos_protocol import documents
 from aos_protocol.diagnostics import Span
 

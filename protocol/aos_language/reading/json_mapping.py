@@ -3,11 +3,10 @@
 from msgspec.structs import replace
 
 from aos_language.findings import Findings
-from aos_language.reading.code import dedented
 from aos_language.reading.document import check_name, normal_type
 from aos_language.reading.json_record import Record
 from aos_language.reading.local_variable import JSON_SOURCES, LocalVariableParts, build_local_variable
-from aos_language.reading.source import Text
+from aos_language.reading.source import Text, dedented
 from aos_protocol import documents
 from aos_protocol.diagnostics import Span
 

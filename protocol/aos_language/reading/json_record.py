@@ -10,7 +10,6 @@ from typing import TypeVar
 from msgspec.structs import replace
 
 from aos_language.findings import Findings
-from aos_language.reading.code import expression, without_blank_lines
 from aos_language.reading.json_text import (
     JsonArray,
     JsonConstant,
@@ -21,7 +20,7 @@ from aos_language.reading.json_text import (
     code_snippet,
     describe,
 )
-from aos_language.reading.source import Source, Text
+from aos_language.reading.source import Source, Text, expression, without_blank_lines
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import Snippet
 from aos_protocol.spelling import quoted

@@ -4,12 +4,11 @@ import re
 from collections.abc import Iterator, Sequence
 
 from aos_language.findings import Findings
-from aos_language.reading.code import expression
 from aos_language.reading.document import array_type, check_name, enum_type
 from aos_language.reading.sdl_declaration import Declaration, read_declaration, read_number, read_truth
 from aos_language.reading.sdl_sections import DEFAULT_DISCOUNT, Sections, read_block
 from aos_language.reading.sdl_text import Part, Section, listed_values
-from aos_language.reading.source import Text
+from aos_language.reading.source import Text, expression
 from aos_protocol import documents
 from aos_protocol.diagnostics import Span
 

@@ -6,12 +6,11 @@ import msgspec
 from msgspec.structs import replace
 
 from aos_language.findings import Findings
-from aos_language.reading.code import expression
 from aos_language.reading.document import check_name, enum_type, normal_type
 from aos_language.reading.glued_else import with_else_apart
 from aos_language.reading.sdl_text import Part, Section, enum_values, last_of
 from aos_language.reading.sdl_words import GRAMMARS
-from aos_language.reading.source import Text
+from aos_language.reading.source import Text, expression
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment, Iteration, Snippet, TemporaryVariable
 

@@ -15,8 +15,7 @@ from typing import TypeVar
 import msgspec
 
 from aos_language.findings import Findings
-from aos_language.reading.code import dedented, expression, without_blank_lines
-from aos_language.reading.source import Source, Text
+from aos_language.reading.source import Source, Text, dedented, expression, without_blank_lines
 from aos_protocol.diagnostics import Mend, Span
 from aos_protocol.documents import Snippet
 from aos_protocol.spelling import nearest

@@ -14,8 +14,8 @@ import networkx as nx
 import numpy as np
 import numpy.typing as npt
 
-from aos_skills.pybullet.parts.differential_drive import DifferentialDrive
 from aos_skills.pybullet.parts.scene import Scene
+from aos_skills.pybullet.robots.turtlebot3.robot import DifferentialDrive
 
 CELL_M = 0.05
 NEAR_M = 0.12
