@@ -20,8 +20,7 @@ from ruamel.yaml import YAML
 from aos_deploy.places import shipped
 from aos_lab.trials.claims import Claim, Verdict, asking_the_world, judge
 from aos_lab.trials.files import Experiment, Part, read_experiment
-from aos_lab.trials.model_player import ModelMissions, ModelPlayer
-from aos_lab.trials.players import ScriptPlayer
+from aos_lab.trials.players import ModelMissions, ModelPlayer, ScriptPlayer
 from aos_lab.trials.setting import deployment_of, world_deployment_of
 from aos_lab.trials.trial import Trial
 from aos_solver.child.engine import Engine

@@ -11,8 +11,7 @@ from typing import Any, NoReturn
 import typer
 
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error
-from aos_deploy.marked_commands import add_commands
-from aos_deploy.options import HELP_NAMES, Version
+from aos_deploy.options import HELP_NAMES, Version, add_commands
 from aos_deploy.printing import print_fault
 from aos_deploy.terminal import write_what_fits
 from aos_deploy.told_numbers import NumbersToldGroup

@@ -9,8 +9,7 @@ import typer
 
 from aos_deploy.bundles.engine import engine_of_bundle
 from aos_deploy.bundles.files import Planned
-from aos_deploy.deployment.constraints import constraint_of_option
-from aos_deploy.deployment.mission_values import SetValues, values_of_options
+from aos_deploy.deployment.mission_values import SetValues, constraint_of_option, values_of_options
 from aos_deploy.deployment.parts import MAX_COUNT, MAX_SEED
 from aos_deploy.options import seconds
 from aos_protocol.documents import MAX_HORIZON

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from aos_deploy.marked_commands import command
+from aos_deploy.options import command
 
 
 @command("Example: aos language-server", "language-server")

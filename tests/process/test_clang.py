@@ -17,7 +17,7 @@ from places import BUNDLES
 from projects import bundle_project
 from scripted_models import lowered
 
-from aos_deploy.deployment.constraints import constrained, constraint_of_option
+from aos_deploy.deployment.mission_values import constrained, constraint_of_option
 from aos_protocol.documents import Project
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler

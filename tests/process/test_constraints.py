@@ -12,7 +12,7 @@ from places import BUNDLES
 from projects import bundle_project, text_project
 from test_mission_loop import Surroundings, observed
 
-from aos_deploy.deployment.constraints import constrained, constraint_of_option
+from aos_deploy.deployment.mission_values import constrained, constraint_of_option
 from aos_deploy.exit_codes import ExitCode, exit_code_of_mission
 from aos_lab.trials.intervals import interval_of_share
 from aos_protocol.documents import Project

@@ -17,7 +17,7 @@ from aos_lab.calibration import calibrate as calibration
 from aos_lab.calibration import records
 from aos_lab.calibration.records import RecordedMission
 from aos_lab.commands import simulate
-from aos_lab.trials.model_player import ModelPlayer
+from aos_lab.trials.players import ModelPlayer
 from aos_lab.trials.trial import Trial
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 

@@ -10,7 +10,7 @@ from scripted_missions import Surroundings, hears_left, jammed, observed
 from test_taking_up import rows_of
 
 from aos_deploy.commands.steering import _held
-from aos_deploy.deployment.constraints import constrained, constraint_of_option
+from aos_deploy.deployment.mission_values import constrained, constraint_of_option
 from aos_deploy.history_check.journal_rules import SteeringRules
 from aos_deploy.views.lines import decision_line
 from aos_protocol.errors import SteeringError

@@ -4,7 +4,7 @@ import pytest
 from places import BUNDLES
 
 from aos_deploy.bundles.files import project_of
-from aos_deploy.deployment.constraints import constraint_of_option
+from aos_deploy.deployment.mission_values import constraint_of_option
 from aos_deploy.deployment.reading import read_deploy_file
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import DeployError

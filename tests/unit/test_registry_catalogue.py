@@ -3,8 +3,15 @@ from typing import Any
 import pytest
 from places import BUNDLES
 
-from aos_language.load import bundle_digest, load_bundle, load_files, read_bundle_files
-from aos_language.merge import changed_skills, merge, pushed_project
+from aos_language.load import (
+    bundle_digest,
+    changed_skills,
+    load_bundle,
+    load_files,
+    merge,
+    pushed_project,
+    read_bundle_files,
+)
 from aos_protocol.errors import StorageError
 from aos_registry.catalogue import Catalogue
 

@@ -1,8 +1,7 @@
 import pytest
 from places import BUNDLES
 
-from aos_language.load import load_files, read_bundle_files
-from aos_language.merge import merge
+from aos_language.load import load_files, merge, read_bundle_files
 from aos_language.reading.document import is_higher
 from aos_protocol.diagnostics import Diagnostic
 from aos_registry.catalogue import Catalogue

@@ -9,7 +9,7 @@ from aos_language.cpp.snippets import read_cpp
 from aos_language.observed import misuses_of, reported_numbers, reports_in
 from aos_middleware.activations.activation import numbers_among, observed_numbers
 from aos_middleware.emission.emit import emit_mapping
-from aos_solver.child.lines.local_values import numbers_by_name, numbers_field
+from aos_solver.child.lines.command_line import numbers_by_name, numbers_field
 from aos_solver.emission.lowering.relevance import irrelevant_variables
 from aos_solver.emission.program import Observed
 

@@ -6,14 +6,12 @@ from pathlib import Path
 import msgspec
 from msgspec.structs import replace
 
-from aos_deploy.deployment.constraints import constrained, findings_of, refuse_errors
 from aos_deploy.deployment.folder import deploy_file_at, deploy_files_in
-from aos_deploy.deployment.mission_values import with_values
+from aos_deploy.deployment.mission_values import constrained, findings_of, refuse_errors, with_values
 from aos_deploy.deployment.reading import Deployment, read_deploy_file
 from aos_deploy.printing import from_here
 from aos_language.follow_ups import told_once
-from aos_language.load import load_files, read_bundle_files
-from aos_language.merge import merge, pushed_project
+from aos_language.load import load_files, merge, pushed_project, read_bundle_files
 from aos_language.mission_parameters import declared_values, parameter_leaves
 from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Diagnostic, has_errors

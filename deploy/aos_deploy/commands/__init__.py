@@ -1,1 +1,1 @@
-"""The sub-commands of `aos`, marked in each module by `marked_commands.command`."""
+"""The sub-commands of `aos`, marked in each module by `options.command`."""

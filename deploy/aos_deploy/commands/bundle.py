@@ -8,8 +8,7 @@ import typer
 from aos_deploy.bundles.files import refusal
 from aos_deploy.commands.documents import Folder
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.marked_commands import grouped
-from aos_deploy.options import AsJson
+from aos_deploy.options import AsJson, grouped
 from aos_deploy.printing import print_diagnostics, print_json, time_text
 from aos_deploy.running_system import System
 from aos_deploy.views.lines import changes_text

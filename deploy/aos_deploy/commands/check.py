@@ -10,8 +10,7 @@ from aos_deploy.exit_codes import ExitCode
 from aos_deploy.history_check.check import BY_TIME, RULES
 from aos_deploy.history_check.files import check_run
 from aos_deploy.history_check.replayed import Replay, replayed
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, OneRun, Runs
+from aos_deploy.options import AsJson, OneRun, Runs, command
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.runs.living import chosen_run, runs_here
 from aos_deploy.terminal import waiting

@@ -7,7 +7,7 @@ import typer
 
 from aos_deploy.bundles.files import planned_of, refusal
 from aos_deploy.commands.documents import FolderOrDeployFile
-from aos_deploy.marked_commands import command
+from aos_deploy.options import command
 from aos_deploy.printing import count, print_diagnostics
 from aos_language.convert import Dialect, convert
 from aos_protocol.diagnostics import has_errors

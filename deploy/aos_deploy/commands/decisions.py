@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 import typer
 
-from aos_deploy.marked_commands import command
-from aos_deploy.options import Mission
+from aos_deploy.options import Mission, command
 from aos_deploy.printing import from_here
 from aos_deploy.running_system import System
 from aos_deploy.runs.directory import RunDirectory

@@ -12,8 +12,7 @@ from aos_deploy.bundles.bindings import binding_findings
 from aos_deploy.bundles.files import deployment_at, planned_of, project_at, refusal, with_mission
 from aos_deploy.bundles.sarif import sarif_log
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments, command
 from aos_deploy.printing import count, print_diagnostics, print_json
 from aos_language.follow_ups import told_once
 from aos_language.load import load_files, with_excerpts

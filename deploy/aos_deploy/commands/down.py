@@ -6,8 +6,7 @@ from typing import Annotated
 import typer
 
 from aos_deploy.commands.runs import entry_of, print_entries
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, Run, Runs
+from aos_deploy.options import AsJson, Run, Runs, command
 from aos_deploy.printing import print_json
 from aos_deploy.runs.living import living_run, living_system
 from aos_protocol.errors import BusError

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, ChosenRuns, Runs
+from aos_deploy.options import AsJson, ChosenRuns, Runs, command
 from aos_deploy.printing import count, print_json
 from aos_deploy.runs.living import chosen_runs
 

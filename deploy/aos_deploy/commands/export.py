@@ -6,8 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, ChosenRuns, Runs
+from aos_deploy.options import AsJson, ChosenRuns, Runs, command
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.runs.living import chosen_runs
 from aos_protocol.errors import DeployError

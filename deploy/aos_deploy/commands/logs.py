@@ -8,8 +8,7 @@ from typing import Annotated
 import msgspec
 import typer
 
-from aos_deploy.marked_commands import command
-from aos_deploy.options import Run, Runs
+from aos_deploy.options import Run, Runs, command
 from aos_deploy.printing import from_here
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.living import chosen_run

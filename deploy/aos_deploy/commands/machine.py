@@ -14,8 +14,7 @@ import msgspec
 import typer
 
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson
+from aos_deploy.options import AsJson, command
 from aos_deploy.places import cache_dir
 from aos_deploy.printing import print_json
 from aos_protocol.errors import AosError

@@ -12,8 +12,7 @@ from msgspec.structs import replace
 from aos_deploy.commands import steering
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.exit_codes import EXIT_CODES_TEXT, exit_code_of_ending
-from aos_deploy.marked_commands import add_commands, grouped
-from aos_deploy.options import AsJson
+from aos_deploy.options import AsJson, add_commands, grouped
 from aos_deploy.printing import count, print_json
 from aos_deploy.running_system import System
 from aos_deploy.runs.living import chosen_run

@@ -17,8 +17,7 @@ from aos_deploy.places import deploy_files, shipped
 from aos_deploy.systemd_unit import unit_name, unit_of
 from aos_language.convert import Dialect, convert
 from aos_language.cpp.keywords import CPP_KEYWORDS
-from aos_language.load import load_bundle, read_bundle_files
-from aos_language.merge import pushed_project
+from aos_language.load import load_bundle, pushed_project, read_bundle_files
 from aos_protocol.errors import DocumentError
 from aos_protocol.spelling import did_you_mean
 

@@ -13,8 +13,7 @@ from aos_deploy import planning_options
 from aos_deploy.bundles.files import planned_of
 from aos_deploy.bundles.reachability import remark_on_start
 from aos_deploy.deployment.mission_values import SetValues
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, TrustDocuments, seconds
+from aos_deploy.options import AsJson, TrustDocuments, command, seconds
 from aos_deploy.printing import show
 from aos_deploy.terminal import waiting
 from aos_deploy.views.lines import risk_text

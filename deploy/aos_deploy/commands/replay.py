@@ -9,8 +9,7 @@ import msgspec
 import typer
 
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, Mission, OneRun, Runs, TrustDocuments
+from aos_deploy.options import AsJson, Mission, OneRun, Runs, TrustDocuments, command
 from aos_deploy.printing import count, from_here, show
 from aos_deploy.runs.difference import Difference, difference
 from aos_deploy.runs.living import chosen_run

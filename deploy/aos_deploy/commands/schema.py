@@ -12,7 +12,7 @@ import msgspec
 import typer
 
 from aos_deploy.deployment.parts import DeployFile
-from aos_deploy.marked_commands import command
+from aos_deploy.options import command
 from aos_language.schemas.documents import gsdl_schema, plp_schema
 
 

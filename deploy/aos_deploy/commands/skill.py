@@ -8,8 +8,7 @@ from typing import Annotated, Any
 import msgspec
 import typer
 
-from aos_deploy.marked_commands import command, grouped
-from aos_deploy.options import AsJson, seconds
+from aos_deploy.options import AsJson, command, grouped, seconds
 from aos_deploy.printing import print_json
 from aos_deploy.running_system import System
 from aos_protocol import messages

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson
+from aos_deploy.options import AsJson, command
 from aos_deploy.printing import count, show
 from aos_deploy.running_system import System
 from aos_protocol.errors import DeployError

@@ -13,8 +13,7 @@ from msgspec.structs import replace
 from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.deployment.parts import MAX_SEED
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
-from aos_deploy.marked_commands import command
-from aos_deploy.options import HELP_NAMES, TrustDocuments, Version
+from aos_deploy.options import HELP_NAMES, TrustDocuments, Version, command
 from aos_deploy.printing import print_fault
 from aos_deploy.told_numbers import NumbersToldCommand
 

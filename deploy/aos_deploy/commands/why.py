@@ -6,8 +6,7 @@ from typing import Annotated, NamedTuple, TypeVar
 
 import typer
 
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, Mission, TrustDocuments
+from aos_deploy.options import AsJson, Mission, TrustDocuments, command
 from aos_deploy.printing import show
 from aos_deploy.running_system import System
 from aos_deploy.runs.living import chosen_run

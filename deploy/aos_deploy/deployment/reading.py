@@ -12,10 +12,9 @@ import msgspec
 from msgspec.structs import replace
 
 from aos_deploy.deployment.adapters import TAKEN, AdapterPlan, played_by_model, read_adapters
-from aos_deploy.deployment.constraints import snippet_of
 from aos_deploy.deployment.folder import absolute, deploy_file_at, is_file, is_folder, is_there, named
 from aos_deploy.deployment.hosts import is_collector_address
-from aos_deploy.deployment.mission_values import values_of_node
+from aos_deploy.deployment.mission_values import snippet_of, values_of_node
 from aos_deploy.deployment.own_programs import check_programs
 from aos_deploy.deployment.parts import DeployFile
 from aos_deploy.deployment.typed import known_names, read_structure

@@ -9,8 +9,7 @@ import typer
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, TrustDocuments, seconds
+from aos_deploy.options import AsJson, TrustDocuments, command, seconds
 from aos_deploy.places import cache_dir
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import console, progress

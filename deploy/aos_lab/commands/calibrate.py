@@ -10,8 +10,7 @@ import typer
 from rich import box
 from rich.table import Table
 
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, TrustDocuments, writable
+from aos_deploy.options import AsJson, TrustDocuments, command, writable
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import interruption_told, print_table, progress
 from aos_deploy.views.values import Digits

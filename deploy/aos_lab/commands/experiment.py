@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 from rich.progress import Progress
 
-from aos_deploy.marked_commands import grouped
-from aos_deploy.options import HELP_NAMES, AsJson, TrustDocuments
+from aos_deploy.options import HELP_NAMES, AsJson, TrustDocuments, grouped
 from aos_deploy.places import shipped
 from aos_deploy.printing import count, from_here, json_text, print_json
 from aos_deploy.terminal import progress

@@ -11,8 +11,7 @@ import msgspec
 import typer
 
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments, command
 from aos_deploy.printing import show
 from aos_deploy.terminal import progress, waiting
 from aos_protocol.errors import DeployError

@@ -15,8 +15,7 @@ from msgspec.structs import replace
 from aos_deploy import planning_options
 from aos_deploy.bundles.files import Planned, planned_of
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, TrustDocuments, finite
+from aos_deploy.options import AsJson, TrustDocuments, command, finite
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import progress
 from aos_lab.formats import is_problem_file

@@ -18,8 +18,7 @@ from rich.progress import BarColumn, TextColumn
 from aos_deploy.bundles.engine import engine_of_bundle
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.deployment.parts import MAX_COUNT
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, TrustDocuments, all_writable, finite, seconds, writable
+from aos_deploy.options import AsJson, TrustDocuments, all_writable, command, finite, seconds, writable
 from aos_deploy.places import cache_dir
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import progress, waiting

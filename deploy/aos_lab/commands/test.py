@@ -13,8 +13,7 @@ import typer
 
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, TrustDocuments, writable
+from aos_deploy.options import AsJson, TrustDocuments, command, writable
 from aos_deploy.printing import show
 from aos_deploy.terminal import progress
 from aos_lab.commands.interrupted import interruption_among_missions

@@ -7,7 +7,7 @@ import msgspec
 from aos_deploy.deployment.reading import Deployment
 from aos_deploy.places import cache_dir
 from aos_lab.trials.intervals import Interval, interval_of_mean
-from aos_lab.trials.model_player import ModelMissions, ModelPlayer
+from aos_lab.trials.players import ModelMissions, ModelPlayer
 from aos_lab.trials.trial import Trial
 from aos_solver.child.engine import Engine
 from aos_solver.mission.rules.endings import Ending

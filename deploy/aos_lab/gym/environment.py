@@ -8,8 +8,15 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from aos_lab.gym.spaces import Observation, observation_space, observations
-from aos_lab.gym.worlds import ENDINGS, HiddenWorlds, Numbers, check_at_least_one
+from aos_lab.gym.worlds import (
+    ENDINGS,
+    HiddenWorlds,
+    Numbers,
+    Observation,
+    check_at_least_one,
+    observation_space,
+    observations,
+)
 
 MAX_SEED = 2**63 - 1
 
@@ -19,7 +26,7 @@ class AosEnv(gymnasium.Env[Observation, np.int64]):
 
     An episode terminates when the mission does, and is truncated after `max_episode_steps` if given. `info`
     has the `action`, the `response` and the `ending` in words. In a bundle with text observations these are
-    bytes, and with numbers beside responses dicts: see `aos_lab.gym.spaces`. `number_names` has the names
+    bytes, and with numbers beside responses dicts: see `aos_lab.gym.worlds`. `number_names` has the names
     of these numbers; of an array there are the first `array_room`. `mission_values` are those of mission
     parameters, as `{"target": "alice"}`.
     """

@@ -10,8 +10,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from aos_lab.gym.environment import MAX_SEED
-from aos_lab.gym.spaces import observation_space, observations
-from aos_lab.gym.worlds import HiddenWorlds, ValuesToSet, check_at_least_one
+from aos_lab.gym.worlds import HiddenWorlds, ValuesToSet, check_at_least_one, observation_space, observations
 
 Numbers = NDArray[Any]
 

@@ -1,7 +1,10 @@
 """The hidden worlds of a bundle's model in its engine child, for callers that are not asynchronous.
 
-Numbers that a robot may observe stand in a row. Names of all skills share it: a name has one column, or as
-many as there is room for where it is an array.
+Numbers are what learning programs take, and a model lists the responses of its skills; so an observation is
+a number. Text observations have no list. They are given as their bytes, in an array of fixed length: what is
+alike in two texts stays alike, which numbers in the order of appearance would lose. Where skills report
+numbers beside their responses, an observation is a dict of both. Reported numbers stand in a row. Names of
+all skills share it: a name has one column, or as many as there is room for where it is an array.
 """
 
 import asyncio
@@ -9,6 +12,7 @@ from collections.abc import Coroutine, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
+import gymnasium
 import numpy as np
 from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from numpy.typing import NDArray
@@ -196,3 +200,32 @@ def as_bytes(texts: Sequence[str]) -> NDArray[np.uint8]:
     """Texts as rows of `TEXT_BYTES` bytes, in UTF-8, cut where they are longer."""
     cut = np.array([text.encode()[:TEXT_BYTES] for text in texts], dtype=f"S{TEXT_BYTES}")
     return cut.view(np.uint8).reshape(len(texts), TEXT_BYTES)
+
+
+Observation = np.int64 | NDArray[np.uint8] | dict[str, Any]
+
+
+def observation_space(worlds: HiddenWorlds) -> gymnasium.spaces.Space[Any]:
+    """`Discrete` over the responses, or `Box` of bytes where a skill's response is a text.
+
+    With numbers it is a `Dict` of this `response`, of the `numbers`, and of which of them were `reported`.
+    """
+    response: gymnasium.spaces.Space[Any] = gymnasium.spaces.Discrete(len(worlds.responses))
+    if worlds.has_texts:
+        response = gymnasium.spaces.Box(0, 255, (TEXT_BYTES,), np.uint8)
+    if not worlds.number_names:
+        return response
+    count = len(worlds.number_names)
+    numbers = gymnasium.spaces.Box(-np.inf, np.inf, (count,), np.float64)
+    reported = gymnasium.spaces.MultiBinary(count)
+    return gymnasium.spaces.Dict({"response": response, "numbers": numbers, "reported": reported})
+
+
+def observations(
+    worlds: HiddenWorlds, responses: NDArray[np.int64], texts: list[str], numbers: Numbers
+) -> Any:
+    """The observations of all worlds: an array with a row for each, or a dict of such."""
+    given = as_bytes(texts) if worlds.has_texts else responses
+    if not worlds.number_names:
+        return given
+    return {"response": given, "numbers": numbers.values, "reported": numbers.is_reported}

@@ -11,8 +11,7 @@ from msgspec.structs import replace
 
 from aos_deploy.bundles.files import files_of_bundle
 from aos_deploy.deployment.reading import Deployment
-from aos_lab.trials.model_player import ModelMissions, ModelPlayer
-from aos_lab.trials.players import ScriptPlayer, SystemPlayer
+from aos_lab.trials.players import ModelMissions, ModelPlayer, ScriptPlayer, SystemPlayer
 from aos_lab.trials.ray_cluster import RayPlayer
 from aos_lab.trials.setting import Setting, deployment_of, world_deployment_of
 from aos_lab.trials.trial import KeptTrial, Trial, kept_trials

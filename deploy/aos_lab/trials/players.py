@@ -1,8 +1,8 @@
-"""Missions of a whole system, as `aos-up` runs them, and of a script: its actions one after the other in a
-simulated world, without services.
+"""Missions of a whole system, as `aos-up` runs them, of a script, and against the documents' own model.
 
-The world's physics play the skills of a script. The documents' mappings, in their sandboxed workers, say what
-came back. Topics are read at the end of each skill.
+A script's actions run one after the other in a simulated world, without services. The world's physics play
+the skills. The documents' mappings, in their sandboxed workers, say what came back. Topics are read at the
+end of each skill. Each mission against the model has an engine of its own, and its seed alone decides it.
 """
 
 from __future__ import annotations
@@ -11,27 +11,36 @@ import asyncio
 import json
 import shutil
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import AsyncExitStack
 from pathlib import Path
 from typing import Any
 
+import msgspec
 from msgspec.structs import replace
 
+from aos_deploy.bundles.files import project_of
 from aos_deploy.deployment.adapter_kinds import check_installed
 from aos_deploy.deployment.reading import Deployment
 from aos_deploy.missions.mission_run import MissionRun
+from aos_deploy.places import cache_dir
 from aos_deploy.processes.needed_here import check_needed_here
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.record import Summary
-from aos_lab.trials.model_player import ModelMissions, ModelPlayer
 from aos_lab.trials.trial import Trial, truth_lines
 from aos_middleware.mappings.revisions import emit_project
 from aos_middleware.workers.evaluator import EvaluationLimits, Evaluator
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DeployError
 from aos_runtime.clock import SystemClock
+from aos_solver.building.build import BuiltModel
+from aos_solver.building.project_build import build_project
 from aos_solver.child.answers.models import GroundedAction
 from aos_solver.child.engine import Engine
+from aos_solver.child.search import Search
+from aos_solver.mission.rules.endings import Ending, MissionLimits
+from aos_solver.mission.simulation import simulate_mission
+from aos_solver.offline.policy import following
 
 
 class ScriptPlayer:
@@ -158,3 +167,88 @@ def _trial(seed: int, summary: Summary, run: Path) -> Trial:
         fault=summary.remark if summary.ending in ("fault", "not_started", "cancelled") else "",
         mission_parameters=summary.mission_parameters,
     )
+
+
+DEFAULT_SIMULATIONS = 100_000
+"""The number is that of the commands, where neither simulations nor a time is given."""
+
+
+class ModelMissions(msgspec.Struct, frozen=True):
+    """All that missions of the model depend on beside their seeds; it refers to no file.
+
+    `world` plays the world where the robot's own documents do not.
+    """
+
+    project: Project
+    limits: MissionLimits
+    search: Search
+    world: Project | None = None
+
+    @classmethod
+    def of(cls, deployment: Deployment, world: Deployment | None = None) -> ModelMissions:
+        """Those of a deployment; DocumentError with all that is wrong with its documents."""
+        limits = msgspec.convert(deployment.file.mission, MissionLimits, from_attributes=True)
+        played = project_of(world, plays_world=True) if world is not None else None
+        return cls(project_of(deployment), limits, _search(deployment), played)
+
+
+class ModelPlayer:
+    """Plays missions by the model of their documents, which is built once."""
+
+    def __init__(self, missions: ModelMissions, model: BuiltModel, world: BuiltModel | None = None) -> None:
+        self.missions = missions
+        self.model = model
+        self.world = world
+
+    @classmethod
+    async def prepared(
+        cls, missions: ModelMissions, on_progress: Callable[[str], None] = lambda text: None
+    ) -> ModelPlayer:
+        """Compiles the model; ModelError if that fails."""
+        model = await build_project(missions.project, cache_dir(), on_progress)
+        if missions.world is None:
+            return cls(missions, model)
+        return cls(missions, model, await build_project(missions.world, cache_dir(), on_progress))
+
+    async def close(self) -> None:
+        """Nothing is left of a mission."""
+
+    async def play(self, seed: int) -> Trial:
+        """One mission. The same seed gives the same mission wherever the budget is one in simulations."""
+        start = time.perf_counter()
+        search = replace(self.missions.search, seed=seed)
+        async with AsyncExitStack() as engines:
+            engine = await Engine.start(self.model, seed=seed)
+            engines.push_async_callback(engine.close)
+            world = None
+            if self.world is not None:
+                world = await Engine.start(self.world, seed=seed, keeps_belief=False)
+                engines.push_async_callback(world.close)
+            run = await simulate_mission(engine, search, self.missions.limits, with_states=True, world=world)
+            parameters = engine.description.mission_parameters
+        return Trial(
+            seed=seed,
+            ending=str(run.ending),
+            goal=run.world_ending == Ending.GOAL,
+            actions=run.actions,
+            responses=run.observations,
+            states=run.states[1:],
+            world_ending=str(run.world_ending or ""),
+            value=run.discounted_return,
+            seconds=time.perf_counter() - start,
+            mission_parameters=parameters,
+        )
+
+
+def _search(deployment: Deployment) -> Search:
+    solver = deployment.file.solver
+    search = Search(
+        simulations=solver.simulations or DEFAULT_SIMULATIONS,
+        seed=solver.seed,
+        time_s=solver.time_s,
+        horizon=solver.horizon,
+        plans_to_step_limit=solver.plans_to_step_limit,
+        planner=solver.planner,
+        threads=solver.threads,
+    )
+    return following(search, deployment.policy)

@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from aos_lab.trials.model_player import ModelMissions, ModelPlayer
+from aos_lab.trials.players import ModelMissions, ModelPlayer
 from aos_lab.trials.trial import Trial
 from aos_protocol.errors import AosError, DeployError
 from aos_runtime.distribution import pip_install

@@ -7,8 +7,7 @@ from typing import Annotated, NamedTuple
 import typer
 
 from aos_deploy.export.run_bundle import opened_bundle
-from aos_deploy.marked_commands import command
-from aos_deploy.options import seconds
+from aos_deploy.options import command, seconds
 from aos_deploy.runs.living import runs_here
 from aos_protocol.errors import DeployError
 

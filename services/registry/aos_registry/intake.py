@@ -5,8 +5,7 @@ from collections.abc import Awaitable, Callable, Mapping
 import msgspec
 
 from aos_language.findings import Findings
-from aos_language.load import LoadedBundle, load_files, with_excerpts
-from aos_language.merge import changed_skills, merge, pushed_project
+from aos_language.load import LoadedBundle, changed_skills, load_files, merge, pushed_project, with_excerpts
 from aos_language.reading.document import DocumentKind
 from aos_language.reading.files import KnownFiles, read_documents
 from aos_protocol.codec import encode

@@ -10,9 +10,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from aos_skills.pybullet.parts.camera import Camera
 from aos_skills.pybullet.parts.room_file import RoomFile
-from aos_skills.pybullet.parts.scene import Scene
+from aos_skills.pybullet.parts.scene import Camera, Scene
 
 
 class Faults:

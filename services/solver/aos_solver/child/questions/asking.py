@@ -22,8 +22,7 @@ from aos_solver.child.answers.beliefs import BeliefUpdate, Believed, Conditioned
 from aos_solver.child.answers.models import EngineDescription, EngineFault, Progress
 from aos_solver.child.blame.replay import at_its_statement
 from aos_solver.child.lines.belief_draws import BeliefDraws
-from aos_solver.child.lines.command_line import command_line, with_change
-from aos_solver.child.lines.local_values import numbers_of
+from aos_solver.child.lines.command_line import command_line, numbers_of, with_change
 from aos_solver.child.process.engine_child import (
     EngineChild,
     EngineStart,

@@ -18,8 +18,13 @@ from aos_solver.child.answers.beliefs import (
     import_command,
 )
 from aos_solver.child.answers.models import EngineFault
-from aos_solver.child.lines.command_line import command_line, with_change
-from aos_solver.child.lines.local_values import UnusableLocals, local_values_line, numbers_field
+from aos_solver.child.lines.command_line import (
+    UnusableLocals,
+    command_line,
+    local_values_line,
+    numbers_field,
+    with_change,
+)
 from aos_solver.child.questions.asking import Asking, Done
 
 log = logging.getLogger(__name__)

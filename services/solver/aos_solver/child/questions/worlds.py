@@ -4,8 +4,7 @@ from base64 import b64encode
 from collections.abc import Sequence
 
 from aos_solver.child.answers.worlds import EngineStep, Worlds, WorldStart, WorldState, WorldStep, WorldSteps
-from aos_solver.child.lines.command_line import command_line
-from aos_solver.child.lines.local_values import numbers_by_name
+from aos_solver.child.lines.command_line import command_line, numbers_by_name
 from aos_solver.child.questions.asking import Asking
 
 

@@ -3,8 +3,7 @@
 import math
 from typing import Any
 
-from aos_skills.pybullet.parts.camera import Camera, Pose
-from aos_skills.pybullet.parts.scene import Scene
+from aos_skills.pybullet.parts.scene import Camera, Pose, Scene
 from aos_skills.pybullet.parts.world import Faults, World
 from aos_skills.pybullet.robots.mobile_arm import MobileArm
 from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile

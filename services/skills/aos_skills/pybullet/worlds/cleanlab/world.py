@@ -8,9 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from aos_skills.pybullet.parts.boom_camera import Colors, top_seen
-from aos_skills.pybullet.parts.camera import Camera, Pose
 from aos_skills.pybullet.parts.room_file import Place
-from aos_skills.pybullet.parts.scene import Scene
+from aos_skills.pybullet.parts.scene import Camera, Pose, Scene
 from aos_skills.pybullet.parts.world import Faults, World
 from aos_skills.pybullet.robots.mobile_arm import MobileArm
 from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile

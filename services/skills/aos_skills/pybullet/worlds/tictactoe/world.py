@@ -8,8 +8,7 @@ import numpy as np
 from PIL import Image
 
 from aos_skills.pybullet.parts.arm import TUCKED
-from aos_skills.pybullet.parts.camera import SUN, Camera, Pose, photograph
-from aos_skills.pybullet.parts.scene import Scene, Vector
+from aos_skills.pybullet.parts.scene import SUN, Camera, Pose, Scene, Vector, photograph
 from aos_skills.pybullet.parts.world import Faults, World
 from aos_skills.pybullet.robots.panda import PandaWithPen
 from aos_skills.pybullet.worlds.tictactoe.board import CENTRE_M, Board

@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 import pybullet
 
-from aos_skills.pybullet.parts.camera import Camera, Pose
 from aos_skills.pybullet.parts.route import FloorMap, Rectangle
-from aos_skills.pybullet.parts.scene import Scene, Vector
+from aos_skills.pybullet.parts.scene import Camera, Pose, Scene, Vector
 from aos_skills.pybullet.parts.world import Faults, World
 from aos_skills.pybullet.robots.turtlebot3 import TurtleBot3
 from aos_skills.pybullet.worlds.turtlebot.file import TurtlebotFile
