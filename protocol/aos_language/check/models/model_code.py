@@ -177,7 +177,8 @@ class _BlockCheck:
         if not makes_values and self._block.role is not PARAMETERS:
             return
         for mention in self._cpp.mentions:
-            if mention.path[0] in DRAW_SOURCES | self._scope.shared.drawing:
+            is_draw = mention.path[0] in DRAW_SOURCES and mention.path[-1] in BUILT_INS["AOSUtils"]
+            if is_draw or mention.path[0] in self._scope.shared.drawing:
                 message = "actions are made once, from the likeliest outcome of this draw"
                 hint = "Draw in the initial belief, and let a precondition look at it"
                 self._findings.warning("AOS124", message, self._span(mention.root), hint)
