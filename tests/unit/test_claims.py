@@ -6,7 +6,7 @@ import pytest
 
 from aos_deploy.places import shipped
 from aos_lab.commands.experiment import verdict_line
-from aos_lab.experiments.physics import simulated_speed
+from aos_lab.experiments.results import simulated_speed
 from aos_lab.trials.claims import Around, Before, Claim, Count, When, asking_the_world, judge, matches
 from aos_lab.trials.files import read_experiment, read_script_file, read_test_file
 from aos_lab.trials.intervals import Interval, interval_of_mean, interval_of_share

@@ -6,10 +6,9 @@ from PIL import Image
 
 from aos_lab.calibration.records import RecordedMission, RecordedStep
 from aos_lab.experiments.optimum import Optimum, regret_of
-from aos_lab.experiments.physics import keep_picture
 from aos_lab.experiments.plots import draw_plots
 from aos_lab.experiments.report import write_report
-from aos_lab.experiments.results import PartResult, Results, Surroundings, figures_of, result_of
+from aos_lab.experiments.results import PartResult, Results, Surroundings, figures_of, keep_picture, result_of
 from aos_lab.experiments.statistics import steps_of
 from aos_lab.trials.campaign import Played
 from aos_lab.trials.claims import Claim

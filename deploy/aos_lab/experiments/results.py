@@ -1,18 +1,19 @@
 """The results of an experiment: figures with intervals and verdicts of each part, and what it was run
-with."""
+with; of missions in a simulated world also how fast they were, and pictures."""
 
+import json
 import os
 import platform
 import subprocess
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
 from aos_lab.experiments.optimum import Regret
-from aos_lab.experiments.physics import simulated_speed
 from aos_lab.trials.campaign import Played
 from aos_lab.trials.claims import Verdict, asking_the_world, judge, matches
 from aos_lab.trials.files import Experiment, Part
@@ -160,3 +161,35 @@ def commit_of(folder: Path) -> str:
     except (OSError, subprocess.SubprocessError):
         return ""
     return asked.stdout.strip() if asked.returncode == 0 else ""
+
+
+def simulated_speed(trials: Sequence[Trial]) -> float | None:
+    """Simulated seconds for each second of processor time, pictures included; None where nobody counted."""
+    simulated = used = 0.0
+    for trial in trials:
+        lines = list(_lines(trial))
+        if lines and all("processor_s" in line for line in lines):
+            simulated += lines[-1]["time_s"]
+            used += sum(line["processor_s"] for line in lines)
+    return simulated / used if used else None
+
+
+def keep_picture(runs: Path, seeds: Sequence[int], target: Path) -> Path | None:
+    """The first mission with pictures as it looked at its end, without loss; None where there are none."""
+    for seed in seeds:
+        pictures = sorted(runs.glob(f"seed-{seed}/*/pictures/*.png"))
+        if pictures:
+            from PIL import Image  # Whoever has pictures has it.
+
+            target.parent.mkdir(parents=True, exist_ok=True)
+            with Image.open(pictures[-1]) as picture:
+                picture.save(target, lossless=True)
+            return target
+    return None
+
+
+def _lines(trial: Trial) -> Iterator[dict[str, Any]]:
+    """The lines of a world's record, of which the model's states are none."""
+    for state in trial.states:
+        if state.startswith("{"):
+            yield json.loads(state)

@@ -10,8 +10,7 @@ from msgspec.structs import replace
 from aos_lab.calibration.calibrate import calibrate
 from aos_lab.calibration.records import RecordedMission, read_missions
 from aos_lab.experiments.optimum import Optimum, optimum_of, regret_of
-from aos_lab.experiments.physics import keep_picture
-from aos_lab.experiments.results import PartResult, result_of, surroundings
+from aos_lab.experiments.results import PartResult, keep_picture, result_of, surroundings
 from aos_lab.experiments.statistics import ScriptedStep, Statistics, steps_of
 from aos_lab.trials.campaign import Place, play_campaign
 from aos_lab.trials.files import Experiment, Part, ScriptFile

@@ -6,12 +6,15 @@ parameters, constraints, what skill and mapping say to each other, and what noth
 """
 
 from aos_language.assembly import Assembly
-from aos_language.check.declarations import check_environment_names, check_skill_declarations
+from aos_language.check.declarations import (
+    check_environment_names,
+    check_mission_parameters,
+    check_skill_declarations,
+)
 from aos_language.check.endings import check_endings, check_goals
 from aos_language.check.mappings.mapping_code import check_low_level, check_mapping
 from aos_language.check.mappings.shared_mapping_code import check_shared_mapping_code
 from aos_language.check.mappings.stop_when import check_stop_when
-from aos_language.check.mission_parameters import check_mission_parameters
 from aos_language.check.models.decimals import check_decimals
 from aos_language.check.models.defaults import check_defaults
 from aos_language.check.models.model_code import check_environment_code, check_skill_code

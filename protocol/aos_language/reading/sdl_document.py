@@ -4,8 +4,7 @@ from pathlib import PurePath
 
 from aos_language.findings import Findings
 from aos_language.reading.document import Document, DocumentKind, check_name, read_version
-from aos_language.reading.sdl_environment import read_environment
-from aos_language.reading.sdl_low_level import read_low_level
+from aos_language.reading.sdl_environment import read_environment, read_low_level
 from aos_language.reading.sdl_mapping import read_mapping
 from aos_language.reading.sdl_sections import Sections, places_of_words
 from aos_language.reading.sdl_skill import read_skill

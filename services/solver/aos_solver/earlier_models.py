@@ -12,8 +12,7 @@ from aos_protocol.messages import MissionBegun
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-from aos_solver.mission.models.retracing import Earlier
-from aos_solver.mission.models.takeover import RunningModel
+from aos_solver.mission.models.takeover import Earlier, RunningModel
 from aos_solver.mission.records.memory import MissionMemory
 from aos_solver.mission.records.stretches import models_before
 from aos_solver.settings import Settings

@@ -22,8 +22,7 @@ from aos_solver.mission.abandoning import Abandoning
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.models.model_shelf import ModelShelf
 from aos_solver.mission.models.past import Past
-from aos_solver.mission.models.retracing import Earlier
-from aos_solver.mission.models.takeover import RunningModel
+from aos_solver.mission.models.takeover import Earlier, RunningModel
 from aos_solver.mission.records.logbook import Logbook, Logbooks
 from aos_solver.mission.records.memory import MissionMemory
 from aos_solver.mission.rules.endings import Ending, MissionLimits

@@ -32,8 +32,7 @@ from aos_solver.mission.decision.choices import Choice, Ended, Held, Refused
 from aos_solver.mission.decision.choosing import Chooser
 from aos_solver.mission.decision.risk import RiskBudget
 from aos_solver.mission.models.past import Past, evidence_of, updated
-from aos_solver.mission.models.retracing import Earlier, retraced
-from aos_solver.mission.models.takeover import RunningModel
+from aos_solver.mission.models.takeover import Earlier, RunningModel, retraced
 from aos_solver.mission.ports import Ports
 from aos_solver.mission.records.belief_rows import keep_belief
 from aos_solver.mission.records.memory import MissionMemory, Pending

@@ -24,8 +24,7 @@ from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.search import Search
 from aos_solver.earlier_models import built_for
 from aos_solver.mission.models.past import Evidence, Past, evidence_of, updated
-from aos_solver.mission.models.retracing import Earlier, retraced
-from aos_solver.mission.models.takeover import RunningModel, Successor
+from aos_solver.mission.models.takeover import Earlier, RunningModel, Successor, retraced
 from aos_solver.mission.records.stretches import Stretch, after, models_before
 from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.rules.failures import FailureRules, Failures

@@ -3,19 +3,22 @@
 Where the layout of the state is the same, the belief is imported. Else the new model replays the mission's
 past from its own initial belief. Where the past is impossible in it, or would take too long, the variables
 that both models have keep their joint distribution, and the others are as the initial belief has them.
+
+A mission that is taken up goes once more through the models that it had, one after the other.
 """
 
 import asyncio
 import re
-from collections.abc import Callable, Collection, Mapping, Sequence
-from typing import Self
+from collections.abc import AsyncIterator, Callable, Collection, Mapping, Sequence
+from typing import NamedTuple, Self
 
 import msgspec
 
 from aos_protocol.documents import Skill
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary, DriftTests, Marginal, ModelAdopted, TakeoverWay
-from aos_runtime.clock import Clock
+from aos_runtime.clock import Clock, SystemClock
+from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.child.engine import Engine
 from aos_solver.mission.models.past import Past, replayed
 from aos_solver.mission.rules.drift import begun
@@ -242,3 +245,37 @@ def distances(
         if distance > _ROUNDING:
             moved[marginal.variable] = distance
     return moved
+
+
+class Earlier(NamedTuple):
+    """A model that another one followed, after so many steps of the mission."""
+
+    model: RunningModel
+    until: int
+
+
+async def retraced(
+    earlier: Sequence[Earlier], model: RunningModel, past: Past, known: int = 0
+) -> AsyncIterator[BeliefUpdate]:
+    """Updates beliefs by each step from `known` on, through the earlier models and then this one.
+
+    Each earlier engine is closed once the next one has its belief, or the walk ends. AosError where a model
+    cannot take over as it did.
+    """
+    models = [*(each.model for each in earlier), model]
+    number = known
+    try:
+        for (before, until), follower in zip(earlier, models[1:], strict=True):
+            stretch = Past(past.refuted_below, past.steps[: known + until])
+            async for update in replayed(before.engine, stretch, number):
+                number += 1
+                yield update
+            successor, takeover = Successor(follower, SystemClock()), None
+            while takeover is None:
+                takeover = await successor.take_over(before, stretch)
+            await before.engine.close()
+        async for update in replayed(model.engine, past, number):
+            yield update
+    finally:
+        for before, _ in earlier:
+            await before.engine.close()
