@@ -1,5 +1,5 @@
 import pytest
-from models import built_text, engine_of, engine_of_bundle, engine_of_text, simulated
+from models import built_text, engine_of, engine_of_bundle, engine_of_text
 from places import BUNDLES
 
 from aos_solver.building.build import BuiltModel
@@ -16,63 +16,6 @@ reward_code:
 if (state.steps > 1000000) __reward = -1;
 """
 """Nobody plays so long, but a planner cannot know."""
-
-VACUUM = {
-    "vacuum.ef": """project: vacuum
-horizon: 20
-discount: 0.98
-
-define_type: Room
-enum_members: Dock, Hall, Kitchen
-
-state_variable: Room at
-
-state_variable: int battery
-default_value: 6
-
-state_variable: bool dirt [Room]
-
-initial_belief:
-state.dirt[Hall] = AOS.Bernoulli(0.7);
-state.dirt[Kitchen] = AOS.Bernoulli(0.9);
-
-reward_code:
-if (state.at == Dock && !state.dirt[Hall] && !state.dirt[Kitchen]) { __reward = 40; __isGoalState = true; }
-
-reward_code:
-if (state.at != Dock && state.battery <= 0) { __reward = -50; __isFailureState = true; }
-""",
-    "go.sd": """project: vacuum
-parameter: Room room
-
-dynamic_model:
-state__.battery = state.battery - 1;
-if (AOS.Bernoulli(0.9)) state__.at = room;
-__moduleResponse = state__.at == room ? arrived : stuck;
-__reward = -1;
-""",
-    "clean.sd": """project: vacuum
-
-dynamic_model:
-state__.battery = state.battery - 2;
-if (AOS.Bernoulli(0.85)) state__.dirt[state.at] = false;
-__moduleResponse = cleaned;
-__reward = -2;
-""",
-    "look.sd": """project: vacuum
-
-dynamic_model:
-__moduleResponse = AOS.Bernoulli(0.9) == state.dirt[state.at] ? dirty : clean;
-__reward = -0.2;
-""",
-    "charge.sd": """project: vacuum
-
-dynamic_model:
-if (state.at == Dock) state__.battery = 6;
-__moduleResponse = charged;
-__reward = -3;
-""",
-}
 
 
 @pytest.fixture
@@ -108,13 +51,6 @@ async def test_later_beliefs_are_served_by_lists_of_their_own(counted_tiger: Bui
         assert plan.best.action == first.best.action
         # The tiger is where it was. What is proven of one list is proven of the next one.
         assert plan.best.at_least == pytest.approx(first.best.at_least, abs=0.2)
-
-
-async def test_a_robot_with_a_battery_without_bounds_comes_home():
-    async with engine_of_text(VACUUM) as engine:
-        runs = [await simulated(engine, 3_000, goal_probability=1.0, step_limit=40) for _ in range(2)]
-    assert runs[0] == runs[1]
-    assert [run.world_ending for run in runs] == ["goal", "goal"]
 
 
 async def test_a_belief_is_decided_on_that_is_a_hundred_thousand_steps_before_the_only_reward():

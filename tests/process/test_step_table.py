@@ -58,13 +58,6 @@ async def test_walks_by_the_table_earn_what_the_odds_say():
         assert walked.mean_reward == pytest.approx(sum(means) / HORIZON, rel=0.01)
 
 
-async def test_a_search_by_the_table_finds_the_exact_value():
-    async with engine_of_text(documents("")) as engine:
-        best = max((await engine.exact_values(HORIZON)).actions, key=lambda value: value.q)
-        plan = await engine.plan(simulations=100_000, seed=1, planner="pomcp")
-    assert (plan.best.action, plan.best.q) == (best.action, pytest.approx(best.q, rel=0.01))
-
-
 @pytest.mark.parametrize(
     "move",
     [
