@@ -7,6 +7,7 @@ from aos_language.load import read_bundle_files
 from aos_language.reading import files as reading
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Project
+from aos_protocol.errors import DocumentError
 from aos_registry import intake as intake_module
 from aos_registry.catalogue import Catalogue
 from aos_registry.intake import Intake
@@ -65,6 +66,12 @@ async def test_a_finding_about_documents_that_stay_as_they_are_is_told_once(file
     wrong, _ = await intake.push(mistaken, "test")
     again, _ = await intake.push(mistaken, "test")
     assert wrong.diagnostics == again.diagnostics != ()
+    removed, _ = await intake.remove("fetch", "sing")
+    assert (removed.removed, removed.diagnostics) == (("sing",), ())
+    for skill in ("speak", "look"):
+        await intake.remove("fetch", skill)
+    with pytest.raises(DocumentError, match="fetch has no other skill than take"):
+        await intake.remove("fetch", "take")
 
 
 async def test_a_project_that_is_too_large_is_refused_before_it_is_compiled(

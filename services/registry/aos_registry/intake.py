@@ -110,6 +110,9 @@ class Intake:
         if known is None or skill not in names:
             hint = did_you_mean(skill, names) or f"It has {quoted(names)}"
             raise DocumentError(f"{project} has no skill {skill}", code="AOS110", hint=hint)
+        if names == [skill]:
+            hint = f"`aos bundle rm {project}` takes the whole project out"
+            raise DocumentError(f"{project} has no other skill than {skill}", code="AOS105", hint=hint)
         gone = next(item for item in known.project.skills if item.name == skill)
         homes = {gone.model.span.file, gone.mapping.span.file}
         files = {name: data for name, data in current.files.items() if name not in homes}
@@ -120,7 +123,9 @@ class Intake:
         if loaded.project is None or has_errors(diagnostics):
             return BundleReport(project, False, current.number, diagnostics), False
         number = self._stored(project, loaded, files)
-        return BundleReport(project, True, number, diagnostics, removed=(skill,)), True
+        told, self._told[project] = self._told.get(project, ()), diagnostics
+        news = tuple(each for each in diagnostics if each not in told)
+        return BundleReport(project, True, number, news, removed=(skill,)), True
 
     def past(self, project: str, number: int) -> ProjectRevision:
         """A revision as it was stored; DocumentError where there is none that passes the checks."""
