@@ -6,6 +6,7 @@ from aos_language.cpp.snippets import read_cpp, read_cpp_expression
 MARKS = {
     "aos_effect.holds(": "+(",
     "aos_effect.fails(": "-(",
+    "aos_effect.entered(": "?(",
     "& aos::evaluate_all &": "&",
     "| aos::evaluate_all |": "|",
 }
@@ -34,6 +35,23 @@ def counted(code: str, *, is_expression: bool = False) -> str:
         (
             "if (state.a) if (state.b) { if (state.c) __reward = 5; }",
             "if (+(state.a)) if (+(state.b)) { if (+(state.c)) __reward = 5; }",
+        ),
+        (
+            "if (state.a) { bool all = true; for (auto& d : state.d) all = all && d; __reward = all ? 5 : -5; }",
+            "if (?(state.a)) { bool all = true; for (auto& d : state.d) all = all & +(d);"
+            " __reward = all ? 5 : -5; }",
+        ),
+        (
+            "if (Thing* a = state.a) { if (state.b && state.c && state.d) __reward = 5; }",
+            "if (Thing* a = state.a) { if (+(state.b) & +(state.c) & +(state.d)) __reward = 5; }",
+        ),
+        (
+            "if (state.n) { if (state.b && state.c && 6 / state.n > 2) __reward = 5; }",
+            "if (+(state.n)) { if (+(state.b) & +(state.c) && +(6 / state.n > 2)) __reward = 5; }",
+        ),
+        (
+            "if (state.a) { if (state.b && state.c && fabs(state.d) < 1) __reward = 5; } else __reward = -1;",
+            "if (+(state.a)) { if (+(state.b) & +(state.c) & +(fabs(state.d) < 1)) __reward = 5; } else __reward = -1;",
         ),
         (
             "bool all = true; for (int i = 0; i < 5; i++) if (!state.d[i]) { all = false; break; }"

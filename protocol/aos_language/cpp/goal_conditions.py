@@ -1,7 +1,9 @@
 """The conditions under which C++ statements earn a reward above 0 or end at a goal, as edits that count them.
 
 `if (all_closed && state.at == 3) __reward = 50;` asks for two conditions. What a local variable stands for is
-followed: a flag that a loop clears, or a number that it counts up. Each condition that has to hold becomes
+followed: a flag that a loop clears, or a number that it counts up. Where a block
+asks for three or more, they count in its condition's place: `if (state.is_shipped) __reward = all_fit ? 60 : -20;`
+asks what fits, since to ship comes last. Each condition that has to hold becomes
 `aos_effect.holds(condition)`, each that must not `aos_effect.fails(condition)`, and all of them are
 evaluated, even if one does not hold. The reading is of the text. Where it leaves a doubt, a condition does
 not count.
@@ -27,6 +29,7 @@ _BEFORE = {False: "void f() {", True: "auto x = ("}
 _LOOPS = ("for_statement", "for_range_loop", "while_statement", "do_statement")
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 _MAY_FAIL = ("call_expression", "update_expression", "assignment_expression", "pointer_expression")
+_MATHS = re.compile(r"(?:std::)?(?:f?abs|hypot|min|max|sqrt)")
 _OPPOSITE = {"==": "!=", "!=": "==", ">=": "<", "<": ">=", ">": "<=", "<=": ">"}
 
 
@@ -183,11 +186,27 @@ class _Reading:
             condition = field_of(parent, "condition")
             if parent.type == "if_statement" and condition is not None and child != condition:
                 is_first = field_of(parent, "consequence") == child
-                self.want(condition.named_children[-1], truth == is_first)
+                if truth and is_first and self._asks_enough(parent, child, condition):
+                    self._enter(condition)
+                else:
+                    self.want(condition.named_children[-1], truth == is_first)
                 if not truth:
                     self._drop_break(child)
                     return
             child = parent
+
+    def _asks_enough(self, statement: Node, block: Node, condition: Node) -> bool:
+        """Returns whether what a block asks for is counted whether it is entered or not: a robot packs, then ships."""
+        if field_of(statement, "alternative") is not None or _is_in_loop(statement) or _may_crash(block):
+            return False
+        is_plain = [child.type for child in condition.named_children] not in ([], ["declaration"])
+        counted = [node for node in below(block) if node.id in self._counted]
+        return is_plain and len(condition.named_children) == 1 and sum(map(_weight, counted)) >= _ENOUGH
+
+    def _enter(self, condition: Node) -> None:
+        start, end = condition.start_byte, condition.end_byte
+        self._edit(condition, start, start + 1, "(aos_effect.entered(")
+        self._edit(condition, end - 1, end, "))")
 
     def _want_no_exit(self, block: Node, before: Node) -> None:
         for statement in block.named_children:
@@ -222,10 +241,10 @@ class _Reading:
     def _count(self, node: Node, truth: bool) -> None:
         if node.id in self._counted or re.search(r"\bAOS|\[[=&\w, ]*\]\s*\(", text_of(node)):
             return
-        if node.type in ("true", "false", "number_literal", *_MAY_FAIL[1:3]):
+        if node.type in ("true", "false", "number_literal", "declaration", *_MAY_FAIL[1:3]):
             return
         self._counted.add(node.id)
-        self.count += _IN_A_LOOP if _is_in_loop(node) else 1
+        self.count += _weight(node)
         self._edit(node, node.start_byte, node.start_byte, f"aos_effect.{'holds' if truth else 'fails'}(")
         self._edit(node, node.end_byte, node.end_byte, ")")
 
@@ -256,6 +275,10 @@ def _is_punished(node: Node) -> bool:
     )
 
 
+def _weight(node: Node) -> int:
+    return _IN_A_LOOP if _is_in_loop(node) else 1
+
+
 def _is_in_loop(node: Node) -> bool:
     while (node_above := node.parent) is not None:
         if node_above.type in _LOOPS:
@@ -264,10 +287,27 @@ def _is_in_loop(node: Node) -> bool:
     return False
 
 
+def _may_crash(block: Node) -> bool:
+    """Returns whether a block may do what only its condition keeps from going wrong."""
+    return any(
+        part.type == "pointer_expression"
+        or (part.type == "field_expression" and "->" in text_of(part))
+        or operator_of(part) in ("/", "%")
+        or (part.type == "subscript_expression" and not _is_safe_index(part))
+        for part in below(block)
+    )
+
+
+def _is_safe_index(part: Node) -> bool:
+    return bool(re.match(r"state_*\.", text_of(part))) or (
+        _is_in_loop(part) and "state" not in field_text(part, "indices")
+    )
+
+
 def _cannot_fail(node: Node) -> bool:
     """Returns whether an expression may be evaluated whatever was asked before it."""
     return not any(
-        part.type in _MAY_FAIL
+        (part.type in _MAY_FAIL and not _MATHS.fullmatch(field_text(part, "function")))
         or (part.type == "field_expression" and "->" in text_of(part))
         or operator_of(part) in ("/", "%")
         or (part.type == "subscript_expression" and not re.match(r"state_*\.", text_of(part)))

@@ -72,6 +72,32 @@ TEST("A look that had no time is gone on with, whatever it takes") {
   EXPECT(policy.knows_ways());
 }
 
+// Fourteen switches, of which the first six may be on. A report says whether the first one is. The last action ends the mission, which pays 50 if all are
+// on, and costs 15 else.
+TEST("The first look leaves time to count conditions, since the robot may leave for good after it") {
+  constexpr std::uint32_t switches = 14, end = 1u << switches, last = switches + 1;
+  Problem problem = world(end + 1, last + 1, 0.98);
+  problem.horizon = 40;
+  problem.variables = switches;
+  problem.values.assign((end + 1) * switches, 0);
+  problem.endings[end] = 1;
+  hear(problem, 0.9);
+  start_evenly(problem, 0, 64);
+  for (std::uint32_t state = 0; state < end; ++state) {
+    for (std::uint32_t each = 0; each < switches; ++each) {
+      problem.values[state * switches + each] = static_cast<int>(state >> each & 1);
+      row(problem, state, each) = {{1.0, state | 1u << each, 0, -0.3}};
+    }
+    row(problem, state, switches) = {{1.0, state, 1 + (state & 1), -0.1}};
+    row(problem, state, last) = {{1.0, end, 0, state + 1 == end ? 50.0 : -15.0}};
+    problem.conditions.push_back(std::popcount(state));
+  }
+  problem.conditions.push_back(0);
+  aos::Sampler random{1};
+  aos::OptionPolicy<TableModel> policy;
+  EXPECT(policy.prepare(initial_belief(problem), 1e5, 0, random).empty());
+}
+
 // A thing is in one of 15 rooms, but not in the first one, where the robot is. No look pays for itself, and each step costs 1.
 TEST("A robot looks elsewhere before it looks for ever where it knows that nothing is") {
   constexpr std::uint32_t rooms = 15, end = rooms * rooms;

@@ -16,6 +16,8 @@ struct CountingEffect : EffectWithText {
 
   const auto& holds(const auto& condition) { return counted(condition, true); }
   const auto& fails(const auto& condition) { return counted(condition, false); }
+  // What a block asks for counts where the block is not entered, too.
+  static bool entered(const auto& /*condition*/) { return true; }
 
  private:
   // What is no truth value, such as a text that is compared later, does not count.

@@ -27,8 +27,14 @@ class OptionLibrary {
   const RunningDown<Model>& running_down() const { return running_down_; }
   // The same, where an action of a way is taken again that changes nothing else.
   const RunningDown<Model>* retries() const { return switches::retries ? &running_down_ : nullptr; }
-  // Counts conditions from now on, where rewards and goals have some. Returns whether that is new.
-  bool count() { return !std::exchange(counts_, switches::goal_conditions && Model::has_goal_conditions) && counts_; }
+  // Whether rewards and goals have conditions, which are not counted yet.
+  bool can_count() const { return switches::goal_conditions && Model::has_goal_conditions && !counts_; }
+  // Counts conditions from now on, where there are any. Returns whether that is new.
+  bool count() {
+    const bool is_new = can_count();
+    counts_ = counts_ || is_new;
+    return is_new;
+  }
   const DecisionClock& clock() const { return clock_; }
   // Whether the action alone is an option: it earns something at once in some state.
   bool earns_at_once(int action) const { return std::ranges::find(options_, Option{action}) != options_.end(); }

@@ -59,8 +59,7 @@ class OptionPolicy {
     double left = of_options * affordable_;
     changes_.measure(belief_.states(), library_.cells(), left, random);
     if (!is_prepared_ && changes_.earns_anyway()) return obstacle_ = "the next step earns something whatever the robot does";
-    double found = library_.extend(belief_, left, random);
-    if (found < enough_found && library_.count()) found = library_.extend(belief_, left, random);
+    const double found = find_ways(left, random);
     clock_.end_at(of_gains);
     gains_.measure(library_, belief_, states, changes_, left, random);
     if (switches::deadlines) gains_.end_after(steps_to_deadline(belief_, library_.running_down(), random));
@@ -183,6 +182,21 @@ class OptionPolicy {
   static constexpr double of_plain = 0.05;   // of the steps, where promises were not kept, and before detours
   static constexpr std::size_t of_reward = 64;  // draws
   static constexpr std::size_t most_after = 4;  // observations that are tried after an option
+
+  // Looks for ways from the states. Returns the weight of those with one. Where conditions can be counted, half of the time and the steps is
+  // left for that, since what the first search does not find it does not find soon.
+  double find_ways(double& left, Sampler& random) {
+    const bool can_count = library_.can_count();
+    const double kept = can_count ? left / 2 : 0;
+    left -= kept;
+    double found = 0;
+    {
+      const DecisionClock::Slice part(clock_, can_count ? clock_.left_s() / 2 : clock_.left_s());
+      found = library_.extend(belief_, left, random);
+    }
+    left += kept;
+    return found < enough_found && library_.count() ? library_.extend(belief_, left, random) : found;
+  }
 
   // What keeps the policy from deciding in this model.
   std::string obstacle_of_model(Sampler& random) {
