@@ -37,7 +37,8 @@ def counted(code: str, *, is_expression: bool = False) -> str:
             "if (+(state.a)) if (+(state.b)) { if (+(state.c)) __reward = 5; }",
         ),
         (
-            "if (state.a) { bool all = true; for (auto& d : state.d) all = all && d; __reward = all ? 5 : -5; }",
+            "if (state.a) { bool all = true; for (auto& d : state.d) all = all && d;"
+            " __reward = all ? 5 : -5; }",
             "if (?(state.a)) { bool all = true; for (auto& d : state.d) all = all & +(d);"
             " __reward = all ? 5 : -5; }",
         ),
@@ -51,7 +52,8 @@ def counted(code: str, *, is_expression: bool = False) -> str:
         ),
         (
             "if (state.a) { if (state.b && state.c && fabs(state.d) < 1) __reward = 5; } else __reward = -1;",
-            "if (+(state.a)) { if (+(state.b) & +(state.c) & +(fabs(state.d) < 1)) __reward = 5; } else __reward = -1;",
+            "if (+(state.a)) { if (+(state.b) & +(state.c) & +(fabs(state.d) < 1)) __reward = 5; }"
+            " else __reward = -1;",
         ),
         (
             "bool all = true; for (int i = 0; i < 5; i++) if (!state.d[i]) { all = false; break; }"

@@ -1,12 +1,11 @@
 """The conditions under which C++ statements earn a reward above 0 or end at a goal, as edits that count them.
 
 `if (all_closed && state.at == 3) __reward = 50;` asks for two conditions. What a local variable stands for is
-followed: a flag that a loop clears, or a number that it counts up. Where a block
-asks for three or more, they count in its condition's place: `if (state.is_shipped) __reward = all_fit ? 60 : -20;`
-asks what fits, since to ship comes last. Each condition that has to hold becomes
-`aos_effect.holds(condition)`, each that must not `aos_effect.fails(condition)`, and all of them are
-evaluated, even if one does not hold. The reading is of the text. Where it leaves a doubt, a condition does
-not count.
+followed: a flag that a loop clears, or a number that it counts up. Where a block asks for three or more, they
+count in place of its own condition: `if (state.is_shipped) __reward = all_fit ? 60 : -20;` asks what fits, as
+to ship comes last. Each condition that has to hold becomes `aos_effect.holds(condition)`, each that must not
+`aos_effect.fails(condition)`, and all of them are evaluated, even if one does not hold. The reading is of the
+text. Where it leaves a doubt, a condition does not count.
 """
 
 import re
@@ -196,7 +195,7 @@ class _Reading:
             child = parent
 
     def _asks_enough(self, statement: Node, block: Node, condition: Node) -> bool:
-        """Returns whether what a block asks for is counted whether it is entered or not: a robot packs, then ships."""
+        """Returns whether what a block asks for is counted where it is not entered, too: to ship comes last."""
         if field_of(statement, "alternative") is not None or _is_in_loop(statement) or _may_crash(block):
             return False
         is_plain = [child.type for child in condition.named_children] not in ([], ["declaration"])
