@@ -195,7 +195,7 @@ class _Reading:
             child = parent
 
     def _asks_enough(self, statement: Node, block: Node, condition: Node) -> bool:
-        """Returns whether what a block asks for is counted where it is not entered, too: to ship comes last."""
+        """Returns whether what a block asks for is counted where it is not entered, too."""
         if field_of(statement, "alternative") is not None or _is_in_loop(statement) or _may_crash(block):
             return False
         is_plain = [child.type for child in condition.named_children] not in ([], ["declaration"])
