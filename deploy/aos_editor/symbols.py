@@ -201,7 +201,7 @@ class _BlockNames:
         self._scope = scope
         self._responses = responses
         self._cpp = read_block(block)
-        self._own = {declaration.name for declaration in self._cpp.declarations}
+        self._own = self._cpp.declared
 
     def occurrences(self) -> Iterator[Occurrence]:
         for mention in self._cpp.mentions:

@@ -15,7 +15,7 @@ _COMPARED_BEFORE = re.compile(r"(?:NULL|nullptr)\s*[!=]=\s*$")
 def absent_skills(cpp: Cpp, known: Collection[str]) -> frozenset[str]:
     """The names that extrinsic code takes for skills and that are not `known`: it compares them with NULL, or
     reads their parameters."""
-    own = {declaration.name for declaration in cpp.declarations}
+    own = cpp.declared
     return frozenset(
         mention.path[0]
         for mention in cpp.mentions

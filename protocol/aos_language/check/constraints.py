@@ -77,7 +77,7 @@ def _check_names(
     cpp: Cpp, snippet: Snippet, role: Role, names: Sequence[str], scope: Scope, findings: Findings
 ) -> None:
     """Names that stand first: in an expression on its own nothing else could have declared them."""
-    own = {declaration.name for declaration in cpp.declarations}
+    own = cpp.declared
     own |= {*scope.enums, *scope.enum_values, *scope.compounds, *scope.low_level_names}
     for mention in cpp.mentions:
         name = mention.path[0]

@@ -4,7 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterable
 
-from aos_language.check.models.blocks import environment_blocks, skill_blocks
+from aos_language.check.models.blocks import all_blocks
 from aos_language.findings import Findings
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, SkillModel, Snippet
 
@@ -19,9 +19,9 @@ def check_unused_variables(
     A variable's own default is no use of it. Values of parameters are used by being chosen from.
     """
     models = tuple(models)
-    blocks = [*environment_blocks(environment), *(block for model in models for block in skill_blocks(model))]
     defaults = {id(variable.default_code) for variable in environment.variables}
-    words = _words(block.snippet for block in blocks if id(block.snippet) not in defaults)
+    snippets = (block.snippet for block in all_blocks(environment, models))
+    words = _words(snippet for snippet in snippets if id(snippet) not in defaults)
     looped = _looped_types(environment, models)
     of_default = [
         _words((code,) if (code := variable.default_code) else ()) for variable in environment.variables

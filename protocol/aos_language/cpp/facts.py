@@ -141,6 +141,11 @@ class Cpp(msgspec.Struct, frozen=True):
         """The code with the semicolons that it lacks."""
         return self.replace((offset, ";") for offset in self.missing_semicolons)
 
+    @property
+    def declared(self) -> frozenset[str]:
+        """The names that the code declares."""
+        return frozenset(declaration.name for declaration in self.declarations)
+
     def text(self, extent: Extent) -> str:
         return self.code[extent.start : extent.end]
 

@@ -91,7 +91,7 @@ def flows_of(
     if cpp.faults or root.has_error:
         return Flows(is_opaque=True)
     local = Locals() if local is None else local
-    local.own |= {declaration.name for declaration in cpp.declarations}
+    local.own |= cpp.declared
     aliases = (part for node in below(root) if node.type in _ALIASES for part in below(node))
     local.types |= shared | {text_of(part) for part in aliases if part.type == "type_identifier"}
     walk = _Reading(_Functions((READING_FUNCTIONS | reading) - local.own, shared - local.own), local)

@@ -76,7 +76,7 @@ def values_meant(cpp: Cpp, names: frozenset[str]) -> tuple[Extent, ...]:
         return ()
     if names.isdisjoint(mention.path[0] for mention in cpp.mentions):
         return ()
-    names -= {declaration.name for declaration in cpp.declarations}
+    names -= cpp.declared
     variables = {
         d.name for d in cpp.declarations if d.kind is DeclarationKind.VARIABLE and _NUMBERS.search(d.type)
     }

@@ -1,6 +1,6 @@
 """The pieces of model code of the documents, each with what it may read and write."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import msgspec
 
@@ -128,6 +128,13 @@ def skill_blocks(model: SkillModel) -> Iterator[Block]:
     yield from assignment_blocks(DURATION, model.execution_time, names)
     yield from assignment_blocks(DYNAMIC, model.dynamic_model, names)
     yield from given_observation_blocks(model)
+
+
+def all_blocks(environment: Environment, models: Iterable[SkillModel]) -> Iterator[Block]:
+    """All code of the environment and the skills."""
+    yield from environment_blocks(environment)
+    for model in models:
+        yield from skill_blocks(model)
 
 
 def given_observation_blocks(model: SkillModel) -> Iterator[Block]:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from fractions import Fraction
 
-from aos_language.check.models.blocks import DURATION, Block, environment_blocks, read_block, skill_blocks
+from aos_language.check.models.blocks import DURATION, Block, all_blocks, read_block
 from aos_language.check.scope import Scope, ValueType
 from aos_language.cpp.keywords import DRAW_SOURCES, STATES
 from aos_language.cpp.snippets import Access, Cpp, Extent, Mention
@@ -25,9 +25,7 @@ _TIME = "__moduleExecutionTime"
 def check_decimals(environment: Environment, scope: Scope, findings: Findings) -> None:
     """Reports AOS149 for a float that is compared with what no float is, for a double that code computes or
     draws, and for a fraction that a whole number is given."""
-    models = scope.skills.values()
-    blocks = (*environment_blocks(environment), *(block for model in models for block in skill_blocks(model)))
-    read = [(block, read_block(block)) for block in blocks]
+    read = [(block, read_block(block)) for block in all_blocks(environment, scope.skills.values())]
     computed = {name for _, cpp in read for name in _computed(cpp)}
     for block, cpp in read:
         for mention in cpp.mentions:

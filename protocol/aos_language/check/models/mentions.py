@@ -39,7 +39,7 @@ class MentionCheck:
         self._scope = scope
         self._declared = declared
         self._findings = findings
-        self._locals = {declaration.name for declaration in cpp.declarations}
+        self._locals = cpp.declared
         self._absent = self._absent_skills()
         self._always_run = without_null(cpp.code, self._absent)
         self._reported_absent: set[str] = set()

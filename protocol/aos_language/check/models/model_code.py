@@ -273,7 +273,7 @@ class _BlockCheck:
                 message, hint = "the weights are missing", f"Write `AOS.SampleDiscrete({name}, {{0.5, 0.5}})`"
                 self._findings.error("AOS110", message, self._span(place), hint)
             return
-        declared = {declaration.name for declaration in self._cpp.declarations} | self._declared
+        declared = self._cpp.declared | self._declared
         if name.isidentifier() and name not in self._enum_sizes and name not in declared:
             otherwise = listing("The enums are", sorted(self._enum_sizes))
             self._findings.unknown(

@@ -93,7 +93,7 @@ def check_given_observation(model: SkillModel, mapping: AbstractionMapping, find
     locals_ = {variable.name: variable for variable in mapping.local_variables}
     for block in given_observation_blocks(model):
         cpp = read_block(block)
-        own = {declaration.name for declaration in cpp.declarations} | block.names.keys()
+        own = cpp.declared | block.names.keys()
         for mention in cpp.mentions:
             variable = locals_.get(mention.path[0])
             if variable is None or variable.name in own or local_type(variable.type) is not None:

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable
 
-from aos_language.check.models.blocks import SHARED, environment_blocks, skill_blocks
+from aos_language.check.models.blocks import SHARED, all_blocks
 from aos_language.check.scope import Scope
 from aos_language.cpp.keywords import CPP_KEYWORDS, SPECIAL_NAMES
 from aos_language.cpp.shared import SharedName
@@ -49,8 +49,7 @@ def check_shared_names_are_used(
         return
     shared = shared_code_of(environment)
     words: set[str] = set()
-    blocks = [*environment_blocks(environment), *(block for model in models for block in skill_blocks(model))]
-    for block in blocks:
+    for block in all_blocks(environment, models):
         if block.role is not SHARED:
             words.update(_WORD.findall(block.snippet.code))
     for kind in (*environment.compounds, *environment.variables):

@@ -147,7 +147,7 @@ class Pieces:
         functions = (call.name for call in cpp.calls if len(call.name) == 1 or call.name[:1] == ("std",))
         named = {part for name in functions for part in name}
         named |= {part for name, _ in cpp.types for part in name.split("::")}
-        own = {declaration.name for declaration in cpp.declarations}
+        own = cpp.declared
         for name in unrepeatable_names(frozenset(named - own), code):
             at = re.search(rf"\b{re.escape(name)}\b", code)
             start = at.start() if at is not None else 0

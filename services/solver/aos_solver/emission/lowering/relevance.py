@@ -275,7 +275,7 @@ def looked_through(cpp: Cpp, shared: SharedCode) -> str:
 
     `holds(state, item)` becomes `holds((state.at + state.size), item)`: for readings of the text alone.
     """
-    own = {declaration.name for declaration in cpp.declarations}
+    own = cpp.declared
     edits: dict[Extent, str] = {}
     for call in cpp.calls:
         functions = [

@@ -116,7 +116,7 @@ class Changes:
     def _changed_by_shared_code(self, cpp: Cpp) -> dict[int, set[str]]:
         """The members that a shared function changes, for each place where it is given the whole state."""
         found: dict[int, set[str]] = {}
-        own = {declaration.name for declaration in cpp.declarations}
+        own = cpp.declared
         for call in cpp.calls:
             functions = [function for function in self._shared.functions if call.name == (function.name,)]
             for index, argument in enumerate(call.arguments if own.isdisjoint(call.name) else ()):
@@ -234,7 +234,7 @@ def _ranges(extents: Iterable[Extent | None]) -> Iterator[range]:
 
 def _passed_to_functions(cpp: Cpp, reading: frozenset[str]) -> Iterator[range]:
     """The arguments of calls to functions that may take them by reference; `reading` are some that do not."""
-    own = {declaration.name for declaration in cpp.declarations}
+    own = cpp.declared
     for call in cpp.calls:
         is_function = len(call.name) == 1 or call.name[:1] == ("std",)
         if is_function and call.name[-1] not in READING_FUNCTIONS | (reading - own):

@@ -65,7 +65,7 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
     - a vector of constants that is only read becomes `static const`
     - `AOS.SampleDiscrete(vector<double>{0.5, 0.5})` becomes `AOS.SampleDiscrete({0.5, 0.5})`
     """
-    own = {declaration.name for declaration in cpp.declarations}
+    own = cpp.declared
     for view in _MAP_VIEW.finditer(blanked(strip_comments(cpp.code), cpp.literals)):
         yield *view.span(), f"aos::{view[1]}"
     for call in cpp.calls:

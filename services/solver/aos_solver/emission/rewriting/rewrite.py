@@ -111,7 +111,7 @@ def rewrite(
 
 
 def _of_drawing_calls(cpp: Cpp, drawing: frozenset[str]) -> Iterator[tuple[Extent | int, str]]:
-    own = {declaration.name for declaration in cpp.declarations}
+    own = cpp.declared
     for call in cpp.calls:
         if len(call.name) == 1 and call.name[0] in drawing - own:
             at = cpp.code.index("(", call.function.end) + 1
