@@ -94,6 +94,13 @@ for (int i = 0; i < 2; i++) {
 }"""
 UTILITIES = """state__.spot = 0;
 while (state__.spot == 0) state__.spot = AOSUtils::SampleDiscrete(vector<double>{0.5, 0.2, 0.3});"""
+POINTED = """int total = 0;
+int* where = &total;
+while (AOS.Bernoulli(0.5)) *where = 1 - *where;
+state__.spot = total;"""
+UNENTERED = """state__.spot = 0;
+while (state__.spot < 0) state__.spot = AOS.SampleDiscrete(-1, {0.5, 0.5});
+while (state__.spot == 0) state__.spot = AOS.SampleDiscrete(-1, {0.5, 0.2, 0.3});"""
 EXACT: dict[str, tuple[str, dict[int, Fraction]]] = {
     "again": (
         "state__.spot = 0; while (state__.spot == 0) { state__.spot = AOS.Bernoulli(0.5) ? 0 : 1; }",
@@ -112,6 +119,8 @@ EXACT: dict[str, tuple[str, dict[int, Fraction]]] = {
     "shared": ("state__.spot = 0; state__.spot = rolled(1) + rolled(1);", sum_of_rolls(2)),
     "redrawn": (REDRAWN, sum_of_rolls(2)),
     "utilities": (UTILITIES, ROLL),
+    "pointed": (POINTED, {0: Fraction(2, 3), 1: Fraction(1, 3)}),
+    "unentered": (UNENTERED, ROLL),
 }
 
 

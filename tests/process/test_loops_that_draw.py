@@ -102,6 +102,14 @@ while (true) {
 state__.carried = 0;
 __moduleResponse = placed;
 """
+HOLD = """project: slots
+
+dynamic_model:
+bool is_held = false;
+while (!is_held) is_held = AOS.Bernoulli(0.5);
+__reward = -20;
+__moduleResponse = held;
+"""
 
 
 async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes():
@@ -121,7 +129,7 @@ async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes():
 
 
 async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decision():
-    files = {"slots.ef": SLOTS, "place.sd": PLACE}
+    files = {"slots.ef": SLOTS, "hold.sd": HOLD, "place.sd": PLACE}
     async with engine_of_text(files) as engine:
         chooser = Chooser(
             Terms(name="m", search=Search(simulations=100, seed=1)), Failures(), QuietPorts(), RiskBudget(())
