@@ -11,12 +11,12 @@ from aos_protocol.messages import ActionRefused, ActivationId, Message, MissionS
 from aos_protocol.mission_rows import REFUSED, STEERED
 from aos_runtime.disk.journal import JournalRow
 from aos_solver.child.answers.models import EngineDescription, GroundedAction
-from aos_solver.desks import SteeringDesk
 from aos_solver.mission.control.helm import Helm
 from aos_solver.mission.control.steering import Steering
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.records.memory import folded
 from aos_solver.mission_runner import MissionRunner
+from aos_solver.steering_desk import SteeringDesk
 
 MODEL = EngineDescription(
     "p",

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from aos_runtime.files import locked_folder
+from aos_runtime.disk.folder_lock import locked_folder
 
 SOCKET = "bus"
 """The name of the socket in the run directory."""

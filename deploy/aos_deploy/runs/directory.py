@@ -34,10 +34,11 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
 from aos_protocol.spelling import did_you_mean_path
+from aos_runtime.disk.folder_lock import locked_folder
 from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 from aos_runtime.failpoints import reach
-from aos_runtime.files import PRIVATE, locked_folder, write_whole
 from aos_runtime.processes.settings import fault_path
+from aos_runtime.whole_file import PRIVATE, write_whole
 
 LATEST = "latest"
 """The link to the newest run, in the folder of runs."""

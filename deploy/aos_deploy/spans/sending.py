@@ -16,7 +16,7 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.messages import DecisionRecord, MissionState
 from aos_protocol.mission_rows import DECISION, STATE
 from aos_runtime.disk.journal import Journal, JournalRow
-from aos_runtime.files import write_whole
+from aos_runtime.whole_file import write_whole
 
 _BATCH = 500
 _PLACES = "spans.json"

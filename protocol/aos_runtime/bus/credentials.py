@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from aos_protocol.errors import BusError
-from aos_runtime.files import PRIVATE, write_whole
+from aos_runtime.whole_file import PRIVATE, write_whole
 
 FOLDER = "credentials"
 """The folder in a run directory with one file for each party, named like it."""

@@ -19,13 +19,14 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.bus_ports import BusPorts
 from aos_solver.child.answers.models import Progress
 from aos_solver.child.engine import Engine
-from aos_solver.desks import SteeringDesk, StudyDesk
 from aos_solver.mapping_watch import MappingWatch
 from aos_solver.mission.models.model_shelf import ModelShelf
 from aos_solver.mission.records.history import HistoryReader
 from aos_solver.mission.records.logbook import Logbooks
 from aos_solver.mission_runner import MissionRunner
 from aos_solver.settings import Settings
+from aos_solver.steering_desk import SteeringDesk
+from aos_solver.study_desk import StudyDesk
 
 log = logging.getLogger(__name__)
 

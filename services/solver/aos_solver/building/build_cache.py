@@ -23,7 +23,7 @@ from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 
 from aos_protocol.errors import StorageError
-from aos_runtime.files import locked_folder
+from aos_runtime.disk.folder_lock import locked_folder
 
 _BUILDING = ".building"
 _SIZE_BYTES = 2 * 2**30

@@ -1,21 +1,8 @@
-"""Locks of folders, which go with the process that holds them, and files that nobody reads a part of."""
+"""Files of which nobody ever reads a part."""
 
-import fcntl
 import os
 from collections.abc import Callable
 from pathlib import Path
-
-
-def locked_folder(folder: Path, kind: int, *, opened: int = 0) -> int:
-    """Returns a descriptor that holds the lock; OSError where another excludes it, or it is no folder."""
-    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | opened)
-    try:
-        fcntl.flock(handle, kind)
-    except OSError:
-        os.close(handle)
-        raise
-    return handle
-
 
 PRIVATE = 0o600
 
