@@ -26,8 +26,11 @@ async def test_many_things_are_tested_before_they_are_sent_off():
 
 
 async def test_a_budget_in_time_ends_a_decision_of_options_after_a_first_look_that_is_long_enough():
-    """A mission is prepared by what its first look finds. No machine's load counts in processor time."""
-    built = await built_text(parcels(40))
+    """A mission is prepared by what its first look finds. No machine's load counts in processor time.
+
+    For 40 parcels a fast processor has tried everything in that time.
+    """
+    built = await built_text(parcels(80))
     async with engine_of(built) as engine, engine_of(built) as other:
         for child in (engine, other):
             await child.count_processor_time(True)
