@@ -42,6 +42,14 @@ class Names:
                 self._said = names
                 self._channel.send(event="names", **names)
 
+    def look_after_loss(self, service: str) -> None:
+        """Looks once, and again where the service seems to be there still: the connections of a node that
+        dies end one after the other."""
+        self.look()
+        if self._said is not None and service in self._said["services"]:
+            time.sleep(POLL_S)
+            self.look()
+
     def advice(self, name: str) -> str:
         """Returns what to do where the node of a service or an action does not answer."""
         node = self._nodes.get(name)

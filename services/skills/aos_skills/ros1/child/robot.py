@@ -98,7 +98,7 @@ class Robot:
             text = re.sub(r"""b(['"])(.*)\1$""", r"\2", str(error))
             if "responded with an error" in text:
                 raise Refusal("AOS510", f"{name} failed: {text.partition(': ')[2] or text}")
-            self._names.look()  # That its node has left is told before the call fails.
+            self._names.look_after_loss(name)  # That its node has left is told before the call fails.
             if "unable to connect" in text or "unavailable" in text:
                 raise Refusal("AOS505", f"{name} cannot be reached: {text}", self._names.advice(name))
             raise Refusal("AOS504", f"{name} was lost during the call: {text}")
