@@ -1,5 +1,6 @@
 import json
 import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -82,7 +83,7 @@ def test_the_doctor_says_what_is_there():
 
 def test_the_doctor_says_where_the_loopback_interface_is_down():
     alone = ("unshare", "--user", "--map-root-user", "--net")
-    if finished(*alone, "true").returncode:
+    if shutil.which("unshare") is None or finished(*alone, "true").returncode:
         pytest.skip("nobody gets a network of their own here")
     done = finished(*alone, BIN / "aos", "doctor", "--json")
     findings = {finding["subject"]: finding for finding in json.loads(done.stdout)}

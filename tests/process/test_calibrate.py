@@ -2,6 +2,7 @@ import asyncio
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -23,6 +24,7 @@ from aos_protocol.errors import ModelError
 from aos_protocol.messages import MissionBegun, StartMission
 from aos_runtime.disk.journal import Journal
 from aos_runtime.disk.mission_folders import make_mission_folder, mission_folder
+from aos_solver.building.compiler import find_compiler
 
 AOS = Path(sys.executable).parent / "aos"
 FINER, RETRACT = DEPLOY / "bundles" / "armadillo-finer", DEPLOY / "bundles" / "armadillo-retract"
@@ -101,7 +103,8 @@ def test_intervals_cover_the_numbers_that_missions_were_drawn_with(missions_of_f
 
 def test_a_model_that_is_compiled_first_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     compiler = tmp_path / "c++"
-    compiler.write_text('#!/bin/sh\ncase "$*" in *version*) exec c++ "$@";; esac\nexit 1\n')
+    real = shlex.join(asyncio.run(find_compiler()).command)
+    compiler.write_text(f'#!/bin/sh\ncase "$*" in *version*) exec {real} "$@";; esac\nexit 1\n')
     compiler.chmod(0o755)
     monkeypatch.setenv("CXX", str(compiler))
     monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path))

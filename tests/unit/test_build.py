@@ -291,7 +291,7 @@ async def test_a_list_of_other_parameters_is_told_with_those_of_the_skill(values
         (
             "struct S { int n; }; S s; S* p = &s; p.n = 1;",
             "`p` is a pointer",
-            "member reference type `S *` is a pointer",
+            "a value of type `S *` is a pointer",
         ),
         (
             "int n; n = {1, 2};",

@@ -49,6 +49,8 @@ _CONSEQUENCES = re.compile(
 )
 """Said too where a name within was not declared."""
 _POINTER = re.compile(r"request for member `(\w+)` in `(.+?)`, which is of pointer type .*")
+_POINTER_TYPE = re.compile(r"member reference base type `(.+ ?\*)` is not a structure or union")
+"""Clang tells no more of a pointer in place of a value."""
 _PRIVATE = re.compile(
     r"`.*?(\w+::\w+)(?:\(.*\))?(?: const)?` is private within.*|`(\w+)` is a private member of .*"
 )
@@ -231,6 +233,8 @@ def _plain(text: str) -> tuple[str, str]:
         )
     if (pointer := _POINTER.fullmatch(text)) is not None:
         return f"`{pointer[2]}` is a pointer", f"Write `{pointer[2]}->{pointer[1]}`"
+    if (pointer := _POINTER_TYPE.fullmatch(text)) is not None:
+        return f"a value of type `{pointer[1]}` is a pointer", "Write `->` in place of `.`"
     if (private := _PRIVATE.fullmatch(text)) is not None:
         hint = "Write `struct` in place of `class`, or `public:` before it"
         return f"`{private[1] or private[2]}` is private", hint

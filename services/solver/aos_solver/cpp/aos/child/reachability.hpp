@@ -75,8 +75,8 @@ class Reachability {
   Enumerator draws_;
 };
 
-// Whether the actions can lead from a belief to a goal. States that have ended already do not count. If not all states can be listed, random walks look for a goal. `seconds` are of
-// processor time, for the list and for the walks.
+// Whether the actions can lead from a belief to a goal. States that have ended already do not count. If not all states can be
+// listed, random walks look for a goal. `seconds` are of processor time, for the list and for the walks.
 template <class Model>
 bool can_reach_goal(const Belief<Model>& belief, double seconds, int horizon, Sampler& random) {
   List<Particle<Model>> running;
