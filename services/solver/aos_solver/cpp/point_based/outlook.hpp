@@ -7,7 +7,6 @@
 
 #include <cmath>
 
-#include "numbers/observable_values.hpp"
 #include "point_based/flat_model.hpp"
 #include "point_based/rounding.hpp"
 
@@ -43,19 +42,31 @@ class Outlook {
   // A reward after t decisions loses its `share` at most t times. The sum of the losses is `share` times the values of
   // what is left after one decision, after two, and so on. Each value is at most that of the best state then.
   void add_errors(const FlatModel& model, double share) {
-    FlatModel mirrored = model;
-    for (double& reward : mirrored.rewards) reward = -reward;
+    List<double> best(model.states, 0.0), worst(model.states, 0.0), now(model.states);
+    for (std::size_t left = 1; left < model.horizon; ++left) {
+      above_ += renew<true>(model, best, now);
+      below_ += renew<false>(model, worst, now);
+    }
     const double rounded_up = share * (1 + 1e-6);
-    above_ = rounded_up * sum_of_highest(model);
-    below_ = rounded_up * sum_of_highest(mirrored);
+    above_ *= rounded_up;
+    below_ *= rounded_up;
   }
 
-  // The sum over all numbers of decisions to go, but that of the whole horizon, of the highest fully observable value above 0.
-  static double sum_of_highest(const FlatModel& model) {
-    List<double> values(model.states, 0.0), now(model.states);
-    double sum = 0;
-    for (std::size_t left = 1; left < model.horizon; ++left, values.swap(now)) sum += std::max(one_more_decision(model, values, now).highest, 0.0);
-    return sum;
+  // Extends the best, or the worst, fully observable value of each state by one decision. Returns the largest
+  // size of a value on that side of 0.
+  template <bool is_best>
+  static double renew(const FlatModel& model, List<double>& values, List<double>& now) {
+    double furthest = 0;
+    for (std::size_t state = 0; state < model.states; ++state) {
+      for (std::size_t action = 0; action < model.actions; ++action) {
+        const std::size_t row = model.row(state, action);
+        const double value = model.rewards[row] + model.discount * model.later_value(row, values);
+        if (action == 0 || (is_best ? value > now[state] : value < now[state])) now[state] = value;
+      }
+      furthest = std::max(furthest, is_best ? now[state] : -now[state]);
+    }
+    values.swap(now);
+    return furthest;
   }
 
   double above_ = 0;
