@@ -11,14 +11,11 @@ from rich.console import Console
 
 from aos_deploy.commands import decisions
 from aos_deploy.events import Event, ServiceChanged, Told
-from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
-from aos_deploy.runs.end import Account
 from aos_deploy.terminal import console
 from aos_deploy.views import make_view
 from aos_deploy.views.lines import JsonView, PlainView, decision_line
 from aos_deploy.views.live import LiveView, Screen
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
-from aos_protocol.errors import AosError, error_from_code
 from aos_protocol.messages import (
     ActionValue,
     ActivationId,
@@ -408,44 +405,3 @@ def test_the_screen_says_what_was_remarkable_about_a_step():
 )
 def test_the_view_fits_where_it_is_shown(options, kind):
     assert isinstance(make_view("armadillo", **options), kind)
-
-
-@pytest.mark.parametrize(
-    ("ending", "code"),
-    [
-        ("goal", 0),
-        ("failure", 4),
-        ("over", 8),
-        ("nothing_worthwhile", 5),
-        ("step_limit", 6),
-        ("fault", 7),
-        ("cancelled", 130),
-    ],
-)
-def test_each_ending_has_its_exit_code(ending, code):
-    assert exit_code_of_mission(MissionState("m", "ended", 1, 0.0, ending=ending)) == code
-
-
-@pytest.mark.parametrize(
-    ("code", "before", "after"),
-    [
-        ("AOS201", 1, 7),
-        ("AOS501", 2, 7),
-        ("AOS801", 1, 7),
-        ("AOS110", 1, 7),
-        ("AOS605", 3, 7),
-        ("AOS802", 3, 7),
-        ("AOS203", 3, 7),
-    ],
-)
-def test_a_fault_counts_by_when_it_happens(code, before, after):
-    error: AosError = error_from_code(code, "")
-    assert exit_code_of_error(error) == before
-    account = Account()
-    early = account.stopped("m", error)
-    assert early is not None
-    assert exit_code_of_mission(early) == before
-    account.take(DECISION)
-    late = account.stopped("m", error)
-    assert late is not None
-    assert exit_code_of_mission(late) == after == ExitCode.FAULT

@@ -180,8 +180,8 @@ class DifferentialDrive:
     def _drive(self) -> None:
         limits = (ACCELERATION_M_S2 * STEP_S, TURN_ACCELERATION_RAD_S2 * STEP_S)
         speed, turn = (
-            now + max(-limit, min(limit, wanted - now))
-            for now, wanted, limit in zip(self._speed, self._wanted, limits, strict=True)
+            current + max(-limit, min(limit, wanted - current))
+            for current, wanted, limit in zip(self._speed, self._wanted, limits, strict=True)
         )
         self._speed = (speed, turn)
         half = turn * self._separation_m / 2
@@ -196,7 +196,7 @@ class DifferentialDrive:
     def _count(self) -> None:
         before, self._turned = self._turned, self._wheel_angles()
         left, right = (
-            (now - then) * self._wheel_radius_m for now, then in zip(self._turned, before, strict=True)
+            (after - then) * self._wheel_radius_m for after, then in zip(self._turned, before, strict=True)
         )
         x, y, yaw = self.odometry
         way, turn = (left + right) / 2, (right - left) / self._separation_m
