@@ -1,6 +1,7 @@
-// Ways to rewards that ask for many conditions at once: option_search.hpp.
+// Ways to rewards that ask for many conditions at once, and ways in a world that changes by itself: option_search.hpp, option_library.hpp.
 #include "aos/planning/options/option_search.hpp"
 
+#include "aos/planning/options/option_library.hpp"
 #include "check.hpp"
 #include "worlds.hpp"
 
@@ -74,6 +75,61 @@ TEST("An exit that earns nothing ends no search for what pays, and a search heed
   aos::LeafCells<TableModel> cells;
   cells.prepare(Belief::initial(random), random);
   EXPECT_EQUAL(cells.with_resting().size(), cells.size() + 1);
+}
+
+// A square of `side` by `side` places in a wind of 40 directions, which turns as it likes. Actions 0 and 1 lead on in one dimension each.
+// Action 2 earns 10 in the far corner, and ends the mission.
+Problem windy_square(std::uint32_t side) {
+  constexpr std::uint32_t winds = 40;
+  const std::uint32_t end = side * side * winds;
+  Problem problem = world(end + 1, 3, 0.95);
+  problem.variables = 3;
+  problem.values.assign(problem.variables * (end + 1), 0);
+  problem.endings[end] = 1;
+  for (std::uint32_t state = 0; state < end; ++state) {
+    const std::uint32_t wind = state % winds, x = state / winds % side, y = state / winds / side;
+    std::ranges::copy(std::array{x, y, wind}, problem.values.begin() + problem.variables * state);
+    const std::array<std::uint32_t, 3> next{y * side + std::min(x + 1, side - 1), std::min(y + 1, side - 1) * side + x, y * side + x};
+    for (std::size_t action = 0; action < next.size(); ++action) {
+      row(problem, state, action).clear();
+      for (std::uint32_t turned = 0; turned < winds; ++turned) row(problem, state, action).push_back({1.0 / winds, next[action] * winds + turned, 0, -0.1});
+    }
+    if (next[2] == side * side - 1) row(problem, state, 2) = {{1.0, end, 0, 10}};
+  }
+  return problem;
+}
+
+// The steps of the model until a library has a way from the state with which a problem begins, where it knows what the world changes, and where not.
+double steps_to_a_way(const Problem& problem, bool knows_the_world) {
+  const Belief belief = initial_belief(problem);
+  aos::Sampler random{1};
+  const aos::DecisionClock clock;
+  aos::OptionLibrary<TableModel> library{clock};
+  library.prepare(belief, random);
+  aos::SampledBelief<TableModel> sampled;
+  sampled.draw(belief, 1, random);
+  constexpr double all = 100'000;
+  double steps = all;
+  aos::OwnChanges<TableModel> changes;
+  changes.measure(sampled.states(), library.cells(), steps, random);
+  if (knows_the_world) library.look_first_at_own(changes);
+  EXPECT(library.extend(sampled, steps, random) == 1);
+  return all - steps;
+}
+
+TEST("A search for ways goes by what the robot changes, and not by the wind") {
+  const Problem problem = windy_square(6);
+  EXPECT(steps_to_a_way(problem, true) < 0.7 * steps_to_a_way(problem, false));
+}
+
+TEST("Where the world has to change before anything is earned, a search for ways waits for it") {
+  Problem tides = world(7, 2, 0.95);
+  tides.endings[6] = 1;
+  for (std::uint32_t tide = 0; tide < 6; ++tide) {
+    row(tides, tide, 0) = {{1.0, (tide + 1) % 6, 0, -0.1}};
+    row(tides, tide, 1) = {{1.0, tide == 3 ? 6 : (tide + 1) % 6, 0, tide == 3 ? 10.0 : -1.0}};
+  }
+  EXPECT(steps_to_a_way(tides, true) < 1'000);
 }
 
 }

@@ -6,6 +6,7 @@
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/option_search.hpp"
+#include "aos/planning/options/own_changes.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
 
@@ -48,8 +49,15 @@ class OptionLibrary {
   void prepare(const Belief<Model>& belief, Sampler& random) {
     options_.clear();
     cells_.prepare(belief, random);
+    moving_ = cells_.size();
     searched_cells_ = cells_.with_resting();
+    own_cells_ = searched_cells_;
     running_down_.find(belief, random);
+  }
+
+  // Lets searches look first for ways by what the robot changes, and not by what changes by itself.
+  void look_first_at_own(const OwnChanges<Model>& changes) {
+    own_cells_ = searched_cells_.without([&](std::size_t variable) { return variable < moving_ && changes.is_worlds(variable); });
   }
 
   // Adds options for states from which the known ones lead to nothing, or not to the end. Returns the weight of the states
@@ -75,7 +83,7 @@ class OptionLibrary {
     const std::size_t stride = std::max<std::size_t>(rests.size() / searched_rests, 1);
     for (std::size_t i = 0; i < rests.size(); i += stride) {
       State& rest = rests[i];
-      while (is_left(steps) && Model::ending(rest) == Ending::running && add(OptionSearch<Model>{searched_cells_, clock_, retries(), false}.narrow(rest, steps, random), max_options)) {
+      while (is_left(steps) && Model::ending(rest) == Ending::running && add(ways_by([&](OptionSearch<Model> search) { return search.narrow(rest, steps, random); }, false), max_options)) {
         if (follow(rest, steps, random) == 0) break;
       }
     }
@@ -113,9 +121,16 @@ class OptionLibrary {
 
   bool is_left(double steps) const { return steps > 0 && !clock_.is_over(); }
 
+  // What `look` finds with a search that leaves out what the world changes by itself, or else with one that does not.
+  List<Option> ways_by(auto&& look, bool counts) const {
+    List<Option> ways = look(OptionSearch<Model>{own_cells_, clock_, retries(), counts});
+    if (ways.empty() && own_cells_.size() < searched_cells_.size()) ways = look(OptionSearch<Model>{searched_cells_, clock_, retries(), counts});
+    return ways;
+  }
+
   // The same for those from a state. Of ways that were searched for by conditions no rests are added.
   bool add_from(const State& state, double& steps, Sampler& random) {
-    return add(OptionSearch<Model>{searched_cells_, clock_, retries(), counts_}.from(state, steps, random), counts_ ? 1 : max_options);
+    return add(ways_by([&](OptionSearch<Model> search) { return search.from(state, steps, random); }, counts_), counts_ ? 1 : max_options);
   }
 
   // An end that pays hides what can be earned before it, as each search stops at the first reward. From some of the states where that happens ways are
@@ -127,7 +142,7 @@ class OptionLibrary {
     const std::size_t known = options_.size();
     const std::size_t stride = std::max<std::size_t>(ended.size() / searched_rests, 1);
     for (std::size_t i = 0; i < ended.size() && is_left(left); i += stride) {
-      add(OptionSearch<Model>{searched_cells_, clock_, retries(), false}.past_ends(ended[i], left, random), max_options);
+      add(ways_by([&](OptionSearch<Model> search) { return search.past_ends(ended[i], left, random); }, false), max_options);
     }
     steps += left;
     if (options_.size() > known) past_ends_.succeed();
@@ -166,6 +181,8 @@ class OptionLibrary {
   const DecisionClock& clock_;
   LeafCells<Model> cells_;
   LeafCells<Model> searched_cells_;
+  LeafCells<Model> own_cells_;  // without what the world changes by itself
+  std::size_t moving_ = 0;      // of the searched variables, the first ones, which random walks change
   RunningDown<Model> running_down_;
   List<Option> options_;
   bool counts_ = false;

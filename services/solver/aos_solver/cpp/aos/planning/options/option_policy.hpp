@@ -59,6 +59,7 @@ class OptionPolicy {
     double left = of_options * affordable_;
     changes_.measure(belief_.states(), library_.cells(), left, random);
     if (!is_prepared_ && changes_.earns_anyway()) return obstacle_ = "the next step earns something whatever the robot does";
+    if (switches::own_ways) library_.look_first_at_own(changes_);
     const double found = find_ways(left, random);
     clock_.end_at(of_gains);
     gains_.measure(library_, belief_, states, changes_, left, random);

@@ -58,6 +58,16 @@ class LeafCells {
     return all;
   }
 
+  // The same without the variables for which `is_left_out(number)` holds.
+  LeafCells without(auto&& is_left_out) const {
+    LeafCells some = *this;
+    some.leaves_.clear();
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+      if (!is_left_out(i)) some.leaves_.push_back(leaves_[i]);
+    }
+    return some;
+  }
+
   // Takes up what was at rest and differs between two states, with all of its list, behind the others.
   void add_moved(const State& before, const State& after) {
     std::set<std::size_t> lists;
