@@ -99,7 +99,9 @@ def _report_or_misuse(mention: Mention, cpp: Cpp, code: str) -> Report | Misuse:
             return Report(mention, call)
     message = f"`{mention.text}` is not reported straight from one draw, so its density is not known"
     hint = "Write the draw alone, arithmetic within its arguments, and a statement for each case"
-    return Misuse(reported, message, f"{hint}: {_example(name)}")
+    is_drawn = any(is_draw(call) and reported.start <= call.extent.start < reported.end for call in cpp.calls)
+    mean = "mean" if is_drawn else code[reported.start : reported.end]
+    return Misuse(reported, message, f"{hint}: {_example(name, mean)}")
 
 
 def is_draw(call: Call) -> bool:
@@ -111,8 +113,8 @@ def _to_write(name: str) -> str:
     return f"Write {_example(name)}, or another draw"
 
 
-def _example(name: str) -> str:
-    return f"`{OBSERVED}.{name} = AOS.SampleNormal(mean, deviation);`"
+def _example(name: str, mean: str = "mean") -> str:
+    return f"`{OBSERVED}.{name} = AOS.SampleNormal({mean}, deviation);`"
 
 
 def _reported(mention: Mention, cpp: Cpp, code: str) -> Extent | None:
