@@ -32,6 +32,7 @@ _OPTIONS = (
     "twins",
     "sequels",
     "past_ends",
+    "wide_ways",
     "own_ways",
     "moved_by_ways",
     "reported_worlds",

@@ -132,4 +132,32 @@ TEST("Where the world has to change before anything is earned, a search for ways
   EXPECT(steps_to_a_way(tides, true) < 1'000);
 }
 
+// A square of `side` by `side` places. Actions 0 to 3 lead on in one dimension each, action 4 takes what lies in the middle, and action 5 earns 10 where it is
+// put down at the start, which ends the mission.
+Problem carried_in_a_square(std::uint32_t side) {
+  const std::uint32_t end = 2 * side * side;
+  Problem problem = world(end + 1, 6, 0.95);
+  problem.variables = 3;
+  problem.values.assign(problem.variables * (end + 1), 0);
+  problem.endings[end] = 1;
+  for (std::uint32_t state = 0; state < end; ++state) {
+    const std::uint32_t carries = state % 2, x = state / 2 % side, y = state / 2 / side;
+    std::ranges::copy(std::array{x, y, carries}, problem.values.begin() + problem.variables * state);
+    const auto at = [&](std::uint32_t to_x, std::uint32_t to_y, std::uint32_t then) { return 2 * (to_y * side + to_x) + then; };
+    const bool is_there = x == side / 2 && y == side / 2;
+    const std::array<std::uint32_t, 6> next{at(std::min(x + 1, side - 1), y, carries), at(x, std::min(y + 1, side - 1), carries), at(x - std::min(x, 1U), y, carries),
+                                            at(x, y - std::min(y, 1U), carries), is_there ? at(x, y, 1) : state, state};
+    for (std::size_t action = 0; action < next.size(); ++action) row(problem, state, action) = {{1.0, next[action], 0, -0.1}};
+    if (state == 1) row(problem, state, 5) = {{1.0, end, 0, 10}};
+  }
+  return problem;
+}
+
+TEST("What is carried across a square is brought back, where no new pair of values leads back") {
+  const Problem problem = carried_in_a_square(7);
+  double steps = 20'000;
+  EXPECT(ways(problem, steps).empty());
+  EXPECT(steps_to_a_way(problem, true) < 5'000);
+}
+
 }

@@ -44,6 +44,7 @@ class OptionLibrary {
   void start_over() {
     counts_ = false;
     past_ends_ = Backoff{};
+    widely_ = Backoff{};
   }
   // Forgets all options, and finds what variables the missions of this belief change.
   void prepare(const Belief<Model>& belief, Sampler& random) {
@@ -66,6 +67,7 @@ class OptionLibrary {
     double found = 0;
     List<State> rests;
     List<State> ended;  // by the first option that was taken
+    List<std::size_t> open;  // states without a way
     for (std::size_t k = 0; k < belief.size(); ++k) {
       State state = belief.states()[k];
       std::size_t followed = counts_ ? 0 : follow(state, steps, random);
@@ -74,11 +76,15 @@ class OptionLibrary {
         followed = counts_ ? 0 : follow(state, steps, random);
         has_way = counts_ || followed > 0;
       }
-      if (!has_way) continue;
+      if (!has_way) {
+        open.push_back(k);
+        continue;
+      }
       found += belief.weights()[k];
       if (!counts_ && Model::ending(state) == Ending::running) rests.push_back(state);
       else if (followed == 1) ended.push_back(belief.states()[k]);
     }
+    if (switches::wide_ways && !counts_) found += extend_widely(belief, open, steps, random);
     if (switches::past_ends) extend_past_ends(ended, steps, random);
     const std::size_t stride = std::max<std::size_t>(rests.size() / searched_rests, 1);
     for (std::size_t i = 0; i < rests.size(); i += stride) {
@@ -117,6 +123,7 @@ class OptionLibrary {
   static constexpr std::size_t many_options = 64;
   static constexpr std::size_t searched_rests = 8;  // states where the known options end
   static constexpr double of_past_ends = 0.25;      // of the steps that are left
+  static constexpr double of_wide_ways = 0.5;       // the same
   static constexpr std::size_t longest = 40;        // options in a row
 
   bool is_left(double steps) const { return steps > 0 && !clock_.is_over(); }
@@ -147,6 +154,24 @@ class OptionLibrary {
     steps += left;
     if (options_.size() > known) past_ends_.succeed();
     else past_ends_.fail();
+  }
+
+  // From states without a way wider searches are made, while that finds ways. Returns the weight of those that have one then.
+  double extend_widely(const SampledBelief<Model>& belief, const List<std::size_t>& open, double& steps, Sampler& random) {
+    if (open.empty() || !widely_.is_due()) return 0;
+    double left = of_wide_ways * steps;
+    steps -= left;
+    double found = 0;
+    for (const std::size_t k : open) {
+      State state = belief.states()[k];
+      bool has_way = follow(state, left, random) > 0;
+      if (!has_way && is_left(left)) has_way = add(ways_by([&](OptionSearch<Model> search) { return search.wide(state, left, random); }, false), max_options);
+      found += has_way ? belief.weights()[k] : 0;
+    }
+    steps += left;
+    if (found > 0) widely_.succeed();
+    else widely_.fail();
+    return found;
   }
 
   // Adds options, and what is left of each after its first actions: at most so many for each. Returns whether there were any.
@@ -187,6 +212,7 @@ class OptionLibrary {
   List<Option> options_;
   bool counts_ = false;
   Backoff past_ends_;
+  Backoff widely_;
 };
 
 }

@@ -139,6 +139,8 @@ class OptionSearch {
   }
   // The same at width 1 only.
   List<Option> narrow(const State& state, double& steps, Sampler& random) { return searched(state, 1, steps, random); }
+  // The same at width 3 only: to carry something on a map needs both coordinates with what is carried.
+  List<Option> wide(const State& state, double& steps, Sampler& random) { return searched(state, 3, steps, random); }
   // The ways from a state after which the mission goes on, the best first. No conditions are counted.
   List<Option> past_ends(const State& state, double& steps, Sampler& random) {
     passes_ends_ = true;
@@ -152,6 +154,7 @@ class OptionSearch {
   static constexpr int tries = 4;  // of each way that was found
   static constexpr std::uint32_t asked_every = 32;  // nodes, the clock
   static constexpr int most_rounds = 3;  // through the states of one search
+  static constexpr double of_triple = 0.02;  // of a step of the model, to note what three variables are together
   static constexpr double needs_luck = 0.9;
   static constexpr std::uint32_t longer_by = 2;
   static constexpr std::uint32_t later_ends = 1;
@@ -189,6 +192,7 @@ class OptionSearch {
   // The ways that are at most `longer` steps longer than the shortest one.
   const List<Found>& found_within(const State& start, int width, std::uint32_t longer, double& steps, Sampler& random) {
     double limit = max_steps;
+    const double step = width < 3 ? 1 : 1 + of_triple * static_cast<double>(cells_.size() * cells_.size());
     begin(start);
     seen_.clear();
     note_all(start, seen_, width);
@@ -197,7 +201,7 @@ class OptionSearch {
       if (number % asked_every == 0 && clock_.is_over()) break;
       cells_.write(nodes_[number].state, cells_before_.data());
       const double discount = std::pow(Model::discount, nodes_[number].depth);
-      for (int action = 0; action < Model::action_count(); ++action, --limit, --steps) {
+      for (int action = 0; action < Model::action_count(); ++action, limit -= step, steps -= step) {
         WayNode<State> next = next_to(number, action);
         const bool earns = take(next, discount, random);
         const bool goes_on = Model::ending(next.state) == Ending::running;

@@ -6,8 +6,8 @@
 
 namespace aos {
 
-// Notes in `seen` the values of those of `count` variables that are looked at, or with width 2 their pairs with all others.
-// Returns whether any is new.
+// Notes in `seen` the values of those of `count` variables that are looked at, or with width 2 their pairs with all others, or with width 3
+// these with one more. Returns whether any is new.
 bool note_cells(auto& seen, const std::uint64_t* cells, std::size_t count, int width, auto&& is_looked_at) {
   thread_local List<std::uint64_t> atoms;
   atoms.clear();
@@ -22,7 +22,12 @@ bool note_cells(auto& seen, const std::uint64_t* cells, std::size_t count, int w
     for (std::size_t each = atoms.size(); each < count; ++each) atoms.push_back(atom_of(each));
     const std::uint64_t atom = atoms[variable];
     for (std::size_t other = 0; other < count; ++other) {
-      if (other != variable) is_new = seen.insert(mixed(std::min(atom, atoms[other]), std::max(atom, atoms[other]))) || is_new;
+      if (other == variable) continue;
+      const std::uint64_t pair = mixed(std::min(atom, atoms[other]), std::max(atom, atoms[other]));
+      if (width == 2) is_new = seen.insert(pair) || is_new;
+      for (std::size_t third = other + 1; width == 3 && third < count; ++third) {
+        if (third != variable) is_new = seen.insert(atom + mixed(0, atoms[other] + atoms[third])) || is_new;
+      }
     }
   }
   return is_new;
