@@ -160,4 +160,18 @@ TEST("What is carried across a square is brought back, where no new pair of valu
   EXPECT(steps_to_a_way(problem, true) < 5'000);
 }
 
+TEST("States that no step is left to search from do not count as without a way") {
+  Problem problem = corridor(12, 0.95);
+  start_evenly(problem, 0, 8);
+  const Belief belief = initial_belief(problem);
+  aos::Sampler random{1};
+  const aos::DecisionClock clock;
+  aos::OptionLibrary<TableModel> library{clock};
+  library.prepare(belief, random);
+  aos::SampledBelief<TableModel> sampled;
+  sampled.draw(belief, 8, random);
+  double steps = 1;
+  EXPECT(library.extend(sampled, steps, random) == 1);
+}
+
 }

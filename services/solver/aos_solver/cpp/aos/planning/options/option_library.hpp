@@ -61,20 +61,22 @@ class OptionLibrary {
     own_cells_ = searched_cells_.without([&](std::size_t variable) { return variable < moving_ && changes.is_worlds(variable); });
   }
 
-  // Adds options for states from which the known ones lead to nothing, or not to the end. Returns the weight of the states
-  // with an option. `steps` is counted down.
+  // Adds options for states from which the known ones lead to nothing, or not to the end. Returns the share of the states
+  // with an option, by weight, among those that were looked at before the steps or the time were over. `steps` is counted down.
   double extend(const SampledBelief<Model>& belief, double& steps, Sampler& random) {
     double found = 0;
+    double looked_at = 0;
     List<State> rests;
     List<State> ended;  // by the first option that was taken
     List<std::size_t> open;  // states without a way
-    for (std::size_t k = 0; k < belief.size(); ++k) {
+    for (std::size_t k = 0; k < belief.size() && is_left(steps); ++k) {
+      looked_at += belief.weights()[k];
       State state = belief.states()[k];
       std::size_t followed = counts_ ? 0 : follow(state, steps, random);
       bool has_way = followed > 0;
       if (!has_way && is_left(steps) && add_from(state, steps, random)) {
         followed = counts_ ? 0 : follow(state, steps, random);
-        has_way = counts_ || followed > 0;
+        has_way = counts_ || followed > 0 || !is_left(steps);
       }
       if (!has_way) {
         open.push_back(k);
@@ -93,7 +95,7 @@ class OptionLibrary {
         if (follow(rest, steps, random) == 0) break;
       }
     }
-    return found;
+    return looked_at > 0 ? found / looked_at : 0;
   }
 
   // Adds ways from the first of the states from which one is found within so many steps, however long they take.
@@ -158,7 +160,7 @@ class OptionLibrary {
 
   // From states without a way wider searches are made, while that finds ways. Returns the weight of those that have one then.
   double extend_widely(const SampledBelief<Model>& belief, const List<std::size_t>& open, double& steps, Sampler& random) {
-    if (open.empty() || !widely_.is_due()) return 0;
+    if (open.empty() || !is_left(steps) || !widely_.is_due()) return 0;
     double left = of_wide_ways * steps;
     steps -= left;
     double found = 0;
