@@ -99,22 +99,33 @@ Problem windy_square(std::uint32_t side) {
   return problem;
 }
 
-// The steps of the model until a library has a way from the state with which a problem begins, where it knows what the world changes, and where not.
-double steps_to_a_way(const Problem& problem, bool knows_the_world) {
+// What share of at most `count` states with which a problem begins has a way for a library that may take so many steps, and how many it takes.
+struct Extended {
+  double share;
+  double taken;
+};
+Extended extended(const Problem& problem, std::size_t count, double steps, bool knows_the_world) {
   const Belief belief = initial_belief(problem);
   aos::Sampler random{1};
   const aos::DecisionClock clock;
   aos::OptionLibrary<TableModel> library{clock};
   library.prepare(belief, random);
   aos::SampledBelief<TableModel> sampled;
-  sampled.draw(belief, 1, random);
-  constexpr double all = 100'000;
-  double steps = all;
+  sampled.draw(belief, count, random);
+  double measured = 0;
   aos::OwnChanges<TableModel> changes;
-  changes.measure(sampled.states(), library.cells(), steps, random);
+  changes.measure(sampled.states(), library.cells(), measured, random);
   if (knows_the_world) library.look_first_at_own(changes);
-  EXPECT(library.extend(sampled, steps, random) == 1);
-  return all - steps;
+  double left = steps;
+  const double share = library.extend(sampled, left, random);
+  return {share, steps - left};
+}
+
+// The steps of the model until a library has a way from the state with which a problem begins, where it knows what the world changes, and where not.
+double steps_to_a_way(const Problem& problem, bool knows_the_world) {
+  const Extended found = extended(problem, 1, 100'000, knows_the_world);
+  EXPECT(found.share == 1);
+  return found.taken;
 }
 
 TEST("A search for ways goes by what the robot changes, and not by the wind") {
@@ -163,15 +174,7 @@ TEST("What is carried across a square is brought back, where no new pair of valu
 TEST("States that no step is left to search from do not count as without a way") {
   Problem problem = corridor(12, 0.95);
   start_evenly(problem, 0, 8);
-  const Belief belief = initial_belief(problem);
-  aos::Sampler random{1};
-  const aos::DecisionClock clock;
-  aos::OptionLibrary<TableModel> library{clock};
-  library.prepare(belief, random);
-  aos::SampledBelief<TableModel> sampled;
-  sampled.draw(belief, 8, random);
-  double steps = 1;
-  EXPECT(library.extend(sampled, steps, random) == 1);
+  EXPECT(extended(problem, 8, 1, false).share == 1);
 }
 
 }
