@@ -128,6 +128,17 @@ async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes():
         assert "state.is_full[Left]=true, state.is_full[Right]=true" in loop.state
 
 
+async def test_a_loop_that_ends_is_not_told_beside_an_endless_one_after_it():
+    turned = "dynamic_model:\nint turns = 0;\nwhile (turns < 2) turns += AOS.Bernoulli(0.5);\n"
+    files = {"slots.ef": SLOTS, "place.sd": PLACE.replace("dynamic_model:\n", turned)}
+    async with engine_of_text(files) as engine:
+        prediction = await engine.predict(0)
+        odds = {predicted.response: predicted.probability for predicted in prediction.predicted}
+        assert odds == {"placed": pytest.approx(0.625), "(never ends)": pytest.approx(0.375)}
+        ((_, place),) = await engine.endless_loops()
+    assert (place.file, place.line) == ("place.sd", files["place.sd"].splitlines().index("while (true) {") + 1)
+
+
 async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decision():
     files = {"slots.ef": SLOTS, "hold.sd": HOLD, "place.sd": PLACE}
     async with engine_of_text(files) as engine:

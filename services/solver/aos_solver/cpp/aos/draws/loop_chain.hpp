@@ -94,8 +94,8 @@ class LoopChain {
   // The head to list next.
   Number likeliest() const { return likeliest_.top().second; }
 
-  // Computes how often a run comes to each head. Returns the probability of what is not listed, or lost. A head that leads
-  // to no end is the end of the paths that come there.
+  // Computes how often a run comes to each head. Returns the probability of what is not listed, or lost. A head of a
+  // loop that never ends is the end of the paths that come there.
   double settle();
   double visits(Number head) const { return heads_[head].visits; }
   bool has_ends(Number head) const { return heads_[head].ends > 0 || heads_[head].is_endless; }
@@ -119,8 +119,10 @@ class LoopChain {
     double lost = 0;
   };
   class Elimination;
+  class LastHeads;
 
-  // Notes the listed heads from which no path comes to an end, nor to a head that is not listed.
+  // Notes the heads of the loops that never end: each path from them comes back to them, and to no other head for good. A
+  // head from which every path comes to such a loop may be of a harmless loop before it.
   void find_endless();
 
   List<Head> heads_;

@@ -130,6 +130,72 @@ class LoopChain::Elimination {
   std::size_t work_ = 0;
 };
 
+// Where paths without an end stay: a strongly connected component that nothing leaves, after Tarjan (1972).
+class LoopChain::LastHeads {
+ public:
+  explicit LastHeads(List<Head>& heads) : heads_(heads), found_(heads.size()) {}
+
+  void note_from(Number first) {
+    if (found_[first].order == 0) begin(first);
+    while (!path_.empty()) {
+      const Number head = path_.back();
+      Found& own = found_[head];
+      if (own.next_edge == heads_[head].edges.size()) {
+        end(head);
+        continue;
+      }
+      const Number to = heads_[head].edges[own.next_edge++].to;
+      if (found_[to].order == 0) {
+        begin(to);
+      } else if (found_[to].is_open) {
+        own.earliest = std::min(own.earliest, found_[to].order);
+      } else {
+        own.leaves = true;
+      }
+    }
+  }
+
+ private:
+  // `earliest` is the order of the first open head that a head leads back to.
+  struct Found {
+    Number order = 0, earliest = 0;
+    std::size_t next_edge = 0;
+    bool is_open = false;  // its component is not complete
+    bool leaves = false;   // its component leads to another
+  };
+
+  void begin(Number head) {
+    ++count_;
+    found_[head] = {.order = count_, .earliest = count_, .is_open = true};
+    path_.push_back(head);
+    open_.push_back(head);
+  }
+  void end(Number head) {
+    const Found own = found_[head];
+    path_.pop_back();
+    const bool is_complete = own.earliest == own.order;
+    if (is_complete) close(head);
+    if (path_.empty()) return;
+    Found& before = found_[path_.back()];
+    before.leaves = before.leaves || own.leaves || is_complete;
+    before.earliest = std::min(before.earliest, is_complete ? before.earliest : own.earliest);
+  }
+  void close(Number root) {
+    for (bool is_closed = false; !is_closed;) {
+      const Number head = open_.back();
+      open_.pop_back();
+      found_[head].is_open = false;
+      heads_[head].is_endless = !found_[root].leaves;
+      is_closed = head == root;
+    }
+  }
+
+  List<Head>& heads_;
+  List<Found> found_;
+  List<Number> path_, open_;
+  Number count_ = 0;
+};
+
 void LoopChain::find_endless() {
   List<List<Number>> sources(heads_.size());
   std::vector<bool> ends(heads_.size(), false);
@@ -140,7 +206,8 @@ void LoopChain::find_endless() {
     found.push_back(head);
   };
   for (Number from = 0; from < heads_.size(); ++from) {
-    const Head& head = heads_[from];
+    Head& head = heads_[from];
+    head.is_endless = false;
     if (!head.is_listed || head.ends + head.lost > 0) note(from);
     for (const auto& [to, probability] : head.edges) sources[to].push_back(from);
   }
@@ -149,7 +216,10 @@ void LoopChain::find_endless() {
     found.pop_back();
     for (const Number source : sources[head]) note(source);
   }
-  for (Number head = start + 1; head < heads_.size(); ++head) heads_[head].is_endless = !ends[head];
+  LastHeads last{heads_};
+  for (Number head = start + 1; head < heads_.size(); ++head) {
+    if (!ends[head]) last.note_from(head);
+  }
 }
 
 double LoopChain::settle() {
