@@ -312,6 +312,15 @@ def test_a_draw_that_is_not_written_as_aos_writes_it_is_told_with_the_right_word
     assert only.mend.text == right
 
 
+@pytest.mark.parametrize("wrong", ["'ab'", "''", '"far', "(1", "1 # one"])
+def test_a_misspelt_draw_is_told_beside_what_keeps_its_code_from_being_read(wrong):
+    text = f"AOS.Bernouli(0.1) /* AOS.Bern(1) */;\nstate__.second.x = {wrong}"
+    findings = found(skill=SKILL.replace("state.second.x + steps", text))
+    assert [finding.code for finding in findings] == ["AOS110", "AOS108"]
+    assert findings[0].hint == "Did you mean `Bernoulli`?"
+    assert (findings[0].span.line, findings[0].mend.text) == (9, "Bernoulli")
+
+
 def test_a_draw_that_is_written_as_the_emitted_model_writes_it_is_told_how_documents_do():
     (only,) = found(skill=SKILL.replace("state.second.x + steps", "AOS.SampleDiscrete<Side>({0.5, 0.5})"))
     assert (only.code, only.message) == ("AOS110", "`AOS.SampleDiscrete<Side>` is not how documents write it")

@@ -2,9 +2,9 @@
 
 import difflib
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 
-from aos_language.cpp.snippets import Call, Extent
+from aos_language.cpp.snippets import Call, Cpp, Extent, FaultKind, blanked, strip_comments
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Mend, Span
 from aos_protocol.spelling import quoted
@@ -23,6 +23,7 @@ _ARGUMENTS = {
     "SampleNormal": (2, "a mean and a deviation"),
     "SampleUniform": (2, "a lower and an upper bound"),
 }
+_CALLED = re.compile(rf"\b({'|'.join(BUILT_INS)})\s*(?:\.|::)\s*([A-Za-z_]\w*)\s*(?=\()")
 _DECIMAL_COMMA = re.compile(r"\d+\s*,\s*\d+")
 _WITH_TYPE = re.compile(r"[\w.\s]+<\s*(?P<type>[\w:]+)\s*>")
 _ALIKE = 0.85
@@ -61,6 +62,20 @@ def check_built_in(
             _written_otherwise(f"unknown name `{owner}`", meant, _meant(name) or name, text, span, findings)
     elif len(call.name) == 1 and name not in declared and (meant := _meant(name)):
         _written_otherwise(f"unknown function `{name}`", "AOS", meant, text, span, findings)
+
+
+def calls_of_no_built_in(cpp: Cpp) -> Iterator[Call]:
+    """Calls such as `AOS.Bernouli(p)` in code that is not read because of a fault.
+
+    What follows a quote without a partner is left out, up to the end of its line.
+    """
+    quotes = [fault.extent.start for fault in cpp.faults if fault.kind is FaultKind.QUOTE]
+    unclear = [Extent(start, f"{cpp.code}\n".index("\n", start)) for start in quotes]
+    code = blanked(strip_comments(cpp.code), (*cpp.literals, *unclear))
+    for called in _CALLED.finditer(code):
+        if called[2] not in BUILT_INS[called[1]]:
+            extent = Extent(called.start(), called.end(2))
+            yield Call((called[1], called[2]), extent, extent, ())
 
 
 def _typed(

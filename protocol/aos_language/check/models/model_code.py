@@ -14,7 +14,7 @@ from aos_language.check.models.blocks import (
     read_block,
     skill_blocks,
 )
-from aos_language.check.models.built_ins import BUILT_INS, check_built_in, check_weights
+from aos_language.check.models.built_ins import BUILT_INS, calls_of_no_built_in, check_built_in, check_weights
 from aos_language.check.models.mentions import LITERAL_NAMES, MentionCheck, check_objects, listing
 from aos_language.check.scope import Scope
 from aos_language.check.shared_calls import check_shared_call
@@ -150,6 +150,8 @@ class _BlockCheck:
                 mend = Mend(span, 1, fault.instead) if fault.instead else None
                 self._findings.error("AOS108", fault.message, span, fault.hint, mend)
         if any(fault.kind is not FaultKind.SYNTAX for fault in self._cpp.faults):
+            for call in calls_of_no_built_in(self._cpp):
+                check_built_in(call, self._cpp.code, (), self._span, self._findings)
             return
         if self._block.is_declarations and self._cpp.faults:
             return
