@@ -93,6 +93,13 @@ CODE = {
         "add(state__.row); __reward = state__.row.back(); state__.row.pop_back();",
         9,
     ),
+    "lent": (
+        "auto raise = [&](int by, const vector<int>& row) { state__.row[0] += by; return row[0]; };"
+        "auto sum = [](const vector<int>& all) { return all[0] + all[1]; };"
+        "__reward = raise(amount, state__.row) + 10 * sum({1, 2}) + sum(state__.row);"
+        "state__.row = state.row;",
+        3 + 3 + 30 + 7,
+    ),
     "stream": ('std::stringstream text("4 5"); int a, b; text >> a >> b; __reward = a + b;', 9),
     "flags": (
         "state__.flags[1].flip(); state__.flags.flip(); vector<bool> mine{true, true}; mine[1].flip();"

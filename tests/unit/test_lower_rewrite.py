@@ -41,6 +41,9 @@ def piece_of(code: str) -> Piece:
         "const tBox* box = other; int* n = 0;",
         "auto f = [&, m] { return AOS.Bernoulli(0.5); }; auto g = [=] { return n; };",
         "vector<int> local; vector<int>& row = local;",
+        "auto f = [](const vector<int>& a) {}; f({1, 2}); f(state__.row); state__.row = {3};",
+        "auto f = [](const vector<int>& a) {}; f(state__.row); all_of(f); state__.row = {3};",
+        "auto f = [](const vector<int>& a, int i) {}; f(state.row, 1); state__.row = {3};",
     ],
 )
 def test_plain_code_stands_as_it_is(code):
@@ -57,6 +60,8 @@ def test_plain_code_stands_as_it_is(code):
         ("state.tBoxObjects[i]->x;", "state.tBoxObjects()[i]->x;"),
         ("std::vector<bool>::reference b = state__.b[f];", "auto&& b = state__.b[f];"),
         ("vector<int>& row = state__.row;", "auto& row = state__.row;"),
+        ("auto f = [&](int i, const vector<int>& a) {}; f(1, state__.row); state__.row = {3};",
+         "auto f = [&](int i, const auto& a) {}; f(1, state__.row); state__.row = {3};"),
         ("auto f = [&](string& s, int i) { s += i; };", "auto f = [&](auto& s, int i) { s += i; };"),
         ("vector<int> a{1, eRed}; n = a[0];", "static const vector<int> a{1, eRed}; n = aos::at(a, 0);"),
         ("vector<double> w{0.2, 0.8}; n = AOS.SampleDiscrete(w);",

@@ -44,6 +44,7 @@ _MAP_VIEW = re.compile(r"\b(?:std\s*::\s*)?(?:ranges\s*::\s*)?views\s*::\s*(keys
 _FLIPPED = re.compile(r"(?<=\])\s*\.\s*flip\s*\(\s*\)\Z")
 _LITERAL = re.compile(r"[-+\s{},]|\d[\w.]*|\.\d\w*")
 _WORD = re.compile(r"[A-Za-z_]\w*")
+_LAMBDA_BEFORE = re.compile(r"(\w+)\s*=\s*\[[^\][]*\]\s*\(([^()]*)$")
 _LOOPS_OVER = re.compile(r"\s*:(?!:)\s*")
 
 
@@ -53,7 +54,7 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
     - `vector<int>::iterator at = state__.row.begin();` becomes `auto at`, also from `auto& row = state__.row`
     - `vector<bool>::reference bit = state__.bits[1];` becomes `auto&& bit`
     - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`, and so does a
-      `const` one of a row that the code changes
+      `const` one of a row that the code changes, also where calls of the lambda give it that row
     - `vector<int>* row = &state__.row;` becomes `auto* row`
     - other pointers, `vector<int>* rows[] = {&state__.row}`, become those of `aos::Held`; a lambda's
       `-> vector<int>&` becomes `-> auto&`
@@ -92,7 +93,7 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
         elif declaration.type.endswith("&"):
             reference = _CONTAINER_REFERENCE.search(before)
             is_const = declaration.type.startswith("const")
-            binds = _sees_changes(cpp, declaration) if is_const else _may_bind_state(cpp, declaration, before)
+            binds = _sees_changes(cpp, declaration, before) if is_const else _may_bind_state(cpp, declaration, before)
             if reference is not None and binds:
                 yield reference.start(1), reference.end(1), "auto"
         elif declaration.type.endswith("*"):
@@ -149,12 +150,33 @@ def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
     return initial is not None and cpp.text(initial) not in own
 
 
-def _sees_changes(cpp: Cpp, declaration: Declaration) -> bool:
+def _sees_changes(cpp: Cpp, declaration: Declaration, before: str) -> bool:
     """Returns whether a reference is bound to a part of the state that the same code changes."""
-    path = path_bound(cpp, declaration)[:2]
-    return any(
-        mention.access is not Access.READ for mention in cpp.mentions if path and mention.path[:2] == path
+    is_parameter = declaration.kind is DeclarationKind.PARAMETER
+    paths = _paths_given(cpp, declaration, before) if is_parameter else [path_bound(cpp, declaration)]
+    bound = {path[:2] for path in paths if path and path[0] in STATES}
+    return any(mention.access is not Access.READ and mention.path[:2] in bound for mention in cpp.mentions)
+
+
+def _paths_given(cpp: Cpp, parameter: Declaration, before: str) -> list[tuple[str, ...]]:
+    """Returns what calls of a lambda give to its parameter; nothing where one gives no path, such as `{1, 2}`,
+    or where the lambda is not only called."""
+    own = _LAMBDA_BEFORE.search(before)
+    if own is None:
+        return []
+    index = sum(
+        each.kind is DeclarationKind.PARAMETER and own.start(2) <= each.extent.start < parameter.extent.start
+        for each in cpp.declarations
     )
+    calls = [call for call in cpp.calls if call.name == (own[1],) and len(call.arguments) > index]
+    uses = [m for m in cpp.mentions if m.path[0] == own[1] and m.extent.start != own.start(1)]
+    given = [
+        mention.path
+        for call in calls
+        for mention in cpp.mentions
+        if mention.extent == call.arguments[index] and not mention.method
+    ]
+    return given if len(given) == len(calls) == len(uses) else []
 
 
 def _is_plain_lambda(cpp: Cpp, declaration: Declaration) -> bool:
