@@ -96,9 +96,12 @@ CODE = {
     "lent": (
         "auto raise = [&](int by, const vector<int>& row) { state__.row[0] += by; return row[0]; };"
         "auto sum = [](const vector<int>& all) { return all[0] + all[1]; };"
-        "__reward = raise(amount, state__.row) + 10 * sum({1, 2}) + sum(state__.row);"
-        "state__.row = state.row;",
-        3 + 3 + 30 + 7,
+        "auto& row = state__.row; auto set = [&](const vector<int>& all) { row[2] = 5; return all[2]; };"
+        "auto longer = [&](const vector<int>& all) { auto copy = all; copy.push_back(1); return copy; };"
+        "auto both = [&](const vector<int>& all) { return set(all) + all[1]; };"
+        "__reward = raise(amount, state__.row) + 10 * sum({1, 2}) + sum(row) + both(row);"
+        "__reward += 100 * longer(row).size(); state__.row = state.row;",
+        3 + 3 + 30 + 7 + 6 + 400,
     ),
     "stream": ('std::stringstream text("4 5"); int a, b; text >> a >> b; __reward = a + b;', 9),
     "flags": (

@@ -43,7 +43,8 @@ def piece_of(code: str) -> Piece:
         "vector<int> local; vector<int>& row = local;",
         "auto f = [](const vector<int>& a) {}; f({1, 2}); f(state__.row); state__.row = {3};",
         "auto f = [](const vector<int>& a) {}; f(state__.row); all_of(f); state__.row = {3};",
-        "auto f = [](const vector<int>& a, int i) {}; f(state.row, 1); state__.row = {3};",
+        "auto f = [](const vector<int>& a, int i) {}; f(state.row, 1); state.row.size();",
+        "auto f = [](const vector<int>& a) { auto b = a; }; f(state__.row); state__.row = {3};",
     ],
 )
 def test_plain_code_stands_as_it_is(code):

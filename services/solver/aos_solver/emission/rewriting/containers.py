@@ -19,6 +19,7 @@ from aos_language.cpp.snippets import (
     blanked,
     strip_comments,
 )
+from aos_solver.emission.rewriting.references import end_of_body
 
 _CONTAINER_REFERENCE = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map|set|pair)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"
@@ -54,7 +55,7 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
     - `vector<int>::iterator at = state__.row.begin();` becomes `auto at`, also from `auto& row = state__.row`
     - `vector<bool>::reference bit = state__.bits[1];` becomes `auto&& bit`
     - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`, and so does a
-      `const` one of a row that the code changes, also where calls of the lambda give it that row
+      `const` one of a row that the code changes, or of a lambda in code that changes the state
     - `vector<int>* row = &state__.row;` becomes `auto* row`
     - other pointers, `vector<int>* rows[] = {&state__.row}`, become those of `aos::Held`; a lambda's
       `-> vector<int>&` becomes `-> auto&`
@@ -93,8 +94,8 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
         elif declaration.type.endswith("&"):
             reference = _CONTAINER_REFERENCE.search(before)
             is_const = declaration.type.startswith("const")
-            binds = _sees_changes(cpp, declaration, before) if is_const else _may_bind_state(cpp, declaration, before)
-            if reference is not None and binds:
+            may_bind = _sees_changes if is_const else _may_bind_state
+            if reference is not None and may_bind(cpp, declaration, before):
                 yield reference.start(1), reference.end(1), "auto"
         elif declaration.type.endswith("*"):
             pointer = _CONTAINER_POINTER.search(before)
@@ -151,32 +152,46 @@ def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
 
 
 def _sees_changes(cpp: Cpp, declaration: Declaration, before: str) -> bool:
-    """Returns whether a reference is bound to a part of the state that the same code changes."""
-    is_parameter = declaration.kind is DeclarationKind.PARAMETER
-    paths = _paths_given(cpp, declaration, before) if is_parameter else [path_bound(cpp, declaration)]
-    bound = {path[:2] for path in paths if path and path[0] in STATES}
-    return any(mention.access is not Access.READ and mention.path[:2] in bound for mention in cpp.mentions)
+    """Returns whether a const reference is bound to a part of the state that the same code changes."""
+    changed = [mention.path for mention in cpp.mentions if mention.access is not Access.READ]
+    if declaration.kind is not DeclarationKind.PARAMETER:
+        path = path_bound(cpp, declaration)[:2]
+        return bool(path) and any(each[:2] == path for each in changed)
+    roots = {each.name for each in cpp.declarations if each.type.endswith(("&", "*"))}.union(STATES)
+    is_changed = any(path[0] in roots for path in changed)
+    return is_changed and _is_given_paths(cpp, declaration, before) and not _is_copied(cpp, declaration)
 
 
-def _paths_given(cpp: Cpp, parameter: Declaration, before: str) -> list[tuple[str, ...]]:
-    """Returns what calls of a lambda give to its parameter; nothing where one gives no path, such as `{1, 2}`,
-    or where the lambda is not only called."""
+def _is_given_paths(cpp: Cpp, parameter: Declaration, before: str) -> bool:
+    """Returns whether a lambda is only called, and each call gives a path to this parameter, not `{1, 2}`."""
     own = _LAMBDA_BEFORE.search(before)
     if own is None:
-        return []
+        return False
     index = sum(
         each.kind is DeclarationKind.PARAMETER and own.start(2) <= each.extent.start < parameter.extent.start
         for each in cpp.declarations
     )
     calls = [call for call in cpp.calls if call.name == (own[1],) and len(call.arguments) > index]
     uses = [m for m in cpp.mentions if m.path[0] == own[1] and m.extent.start != own.start(1)]
-    given = [
-        mention.path
-        for call in calls
+    paths = {mention.extent for mention in cpp.mentions if not mention.method}
+    return len(calls) == len(uses) and all(call.arguments[index] in paths for call in calls)
+
+
+def _is_copied(cpp: Cpp, parameter: Declaration) -> bool:
+    """Returns whether a lambda uses a parameter as a whole other than in loops, methods and calls.
+
+    A copy of a state's vector, as by `auto copy = row`, cannot grow beyond that one's capacity.
+    """
+    end = end_of_body(cpp.code, parameter.extent.end)
+    given = {argument for call in cpp.calls for argument in call.arguments}
+    return any(
+        mention.path == (parameter.name,)
+        and parameter.extent.end <= mention.extent.start < end
+        and not mention.method
+        and mention.extent not in given
+        and not cpp.code[: mention.extent.start].rstrip().endswith(":")
         for mention in cpp.mentions
-        if mention.extent == call.arguments[index] and not mention.method
-    ]
-    return given if len(given) == len(calls) == len(uses) else []
+    )
 
 
 def _is_plain_lambda(cpp: Cpp, declaration: Declaration) -> bool:

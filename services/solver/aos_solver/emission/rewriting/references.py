@@ -63,7 +63,7 @@ def capture_edits(cpp: Cpp, drawing: frozenset[str]) -> Iterator[tuple[int, int,
             each.start <= found.start(1) < each.end for each in cpp.literals
         ):
             continue
-        end = _end_of_body(code, found.end())
+        end = end_of_body(code, found.end())
         sources = sorted({name for at, name in drawn if found.end() <= at < end})
         sources = [name for name in sources if f"&{name}" not in found[1].replace(" ", "")]
         if sources:
@@ -71,7 +71,7 @@ def capture_edits(cpp: Cpp, drawing: frozenset[str]) -> Iterator[tuple[int, int,
             yield found.end(1), found.end(1), f", {text}" if found[1].strip() else text
 
 
-def _end_of_body(code: str, start: int) -> int:
+def end_of_body(code: str, start: int) -> int:
     """The end of the first block in braces behind a place."""
     depth = 0
     for at in range(code.find("{", start), len(code)):
