@@ -121,8 +121,7 @@ class LoopChain {
   class Elimination;
   class LastHeads;
 
-  // Notes the heads of the loops that never end: each path from them comes back to them, and to no other head for good. A
-  // head from which every path comes to such a loop may be of a harmless loop before it.
+  // Notes the heads of loops that never end. One that only leads to such a loop may be of a harmless one before it.
   void find_endless();
 
   List<Head> heads_;
