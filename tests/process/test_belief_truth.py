@@ -1,5 +1,6 @@
 import random
 import re
+import statistics
 
 import pytest
 from models import built_text, engine_of, engine_of_text
@@ -147,3 +148,60 @@ async def test_what_opened_up_since_the_beginning_is_given_up_as_well():
     async with engine_of_text(DEALT) as engine:
         for card in range(CARDS):
             await turn_and_look(engine, card, hand)
+
+
+def seen_through_noise(initial: str, seen: str, says_yes: str) -> dict[str, str]:
+    """A sensor that answers by a threshold: nothing but the answer is reported."""
+    return {
+        "levels.ef": f"""project: levels
+horizon: 5
+discount: 0.95
+
+state_variable: int level
+
+state_variable: bool high
+
+initial_belief:
+{initial}
+""",
+        "read.sd": f"""project: levels
+
+dynamic_model:
+double seen = {seen};
+__moduleResponse = {says_yes} ? yes : no;
+""",
+    }
+
+
+def normal_probability_below(value: float) -> float:
+    return statistics.NormalDist().cdf(value)
+
+
+async def probabilities_of_high(files: dict[str, str], seeds: range) -> list[float]:
+    found = []
+    for seed in seeds:
+        async with engine_of_text(files, seed=seed) as engine:
+            update = await engine.update("read", "yes")
+        (high,) = (marginal for marginal in update.summary.marginals if marginal.variable == "high")
+        found.append(high.values["true"])
+    return found
+
+
+async def test_an_answer_by_a_threshold_weighs_two_states_by_its_probabilities():
+    files = seen_through_noise(
+        "state.high = AOS.Bernoulli(0.3);", "AOS.SampleNormal(state.high ? 1 : 0, 1)", "seen > 1"
+    )
+    likely, unlikely = 0.3 * normal_probability_below(0), 0.7 * normal_probability_below(-1)
+    for found in await probabilities_of_high(files, range(101, 109)):
+        assert found == pytest.approx(likely / (likely + unlikely), abs=0.002)
+
+
+async def test_moved_particles_are_no_more_even_than_what_is_believed():
+    files = seen_through_noise(
+        "state.level = AOS.SampleDiscrete(vector<double>(1000, 0.001));\nstate.high = state.level >= 30;",
+        "AOS.SampleNormal(state.level * 0.01, 1)",
+        "seen < -1",
+    )
+    likelihoods = [normal_probability_below(-1 - level / 100) for level in range(1000)]
+    found = await probabilities_of_high(files, range(1, 13))
+    assert statistics.mean(found) == pytest.approx(sum(likelihoods[30:]) / sum(likelihoods), abs=0.005)

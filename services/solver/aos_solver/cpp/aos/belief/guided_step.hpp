@@ -63,6 +63,9 @@ class GuidedStep {
   // Whether the last call left nothing to chance, apart from what has no promise.
   bool was_exhaustive() const { return is_exhaustive_; }
 
+  // Whether a continuous draw was guided so far.
+  bool meets_numbers() const { return watch_.meets_numbers(); }
+
   // How many steps were run so far. One that ends within its trial counts again where it is followed.
   std::size_t runs() const { return runs_; }
 
@@ -107,6 +110,7 @@ class GuidedStep {
       order_ = Order::unknown;
     }
     Order order() const { return order_; }
+    bool meets_numbers() const { return meets_numbers_; }
     Order order_of(std::string_view text) const {
       const double order = order_of_texts(text, observed_);
       return order < 0 ? Order::before : order > 0 ? Order::after : Order::agreeing;
@@ -115,6 +119,7 @@ class GuidedStep {
       if (number != given_) return;
       if (is_text_begun()) order_ = order_of(*response_text);
       if (alternatives_ == nullptr) return;
+      meets_numbers_ = meets_numbers_ || weights == nullptr;
       alternatives_->clear();
       const auto positive = std::count_if(weights, weights + count, [](double weight) { return weight > 0; });
       if (weights == nullptr || positive > max_alternatives) return;
@@ -133,6 +138,7 @@ class GuidedStep {
     std::size_t given_ = 0;
     List<Alternative>* alternatives_ = nullptr;
     Order order_ = Order::unknown;
+    bool meets_numbers_ = false;
   };
 
   struct Trial {

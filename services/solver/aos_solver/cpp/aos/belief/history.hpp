@@ -64,6 +64,7 @@ struct HistoryStep {
   bool is_observed = false;
   bool is_guided = false;
   std::uint32_t by_chance = 0;  // how many draws a guided step leaves to chance
+  bool guides_numbers = false;  // whether some of the others are continuous
   // The numbers that were observed; null if the step's numbers are ignored. Densities are relative to `log_scale`.
   std::shared_ptr<const ObservedNumbers> numbers = nullptr;
   double log_scale = 0;

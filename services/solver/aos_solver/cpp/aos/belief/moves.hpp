@@ -8,7 +8,7 @@
 //
 // Another kind of proposal makes many draws of the origin anew on which no observation seems to depend (free_draws.hpp). All later
 // steps are replayed with their own draws. A guided one keeps its estimated likelihood and has to draw from the same weights as
-// before. The parameters of continuous draws are not compared: there the kept likelihood is an approximation.
+// before. What a continuous draw leads to may differ though its numbers are the same: such a step is guided anew.
 //
 // The states that a copy has passed are kept (passage.hpp). The limits of `moved` count the steps of a proposal that repeats all.
 #pragma once
@@ -98,6 +98,8 @@ class Moves {
         copies_.push_back({i, state, weight / count, cloud.lineages[i].trace, false});
       }
     }
+    // Moves may end before all copies had their turn. In the particles' order those would be copies of the first states.
+    for (std::size_t i = copies_.size(); i > 1; --i) std::swap(copies_[i - 1], copies_[random_.below(static_cast<int>(i))]);
   }
 
   // Merges the copies. Those that were not moved are worth as many samples as their particle was.
@@ -178,11 +180,16 @@ class Moves {
     if (after == passed(passage, 0)) return false;
     states_.assign(1, after);
     likelihoods_.clear();
+    proposed_.clear();
     const bool is_accepted = still_brings(passage, after);
     free_draws_.note(is_accepted);
     if (!is_accepted) return false;
     copy.state = after;
     passage.refresh({used_, 0, 1, static_cast<std::uint32_t>(used_.size())}, states_, likelihoods_);
+    std::size_t guided_anew = 0;
+    for (std::size_t i = 1; i < passage.size(); ++i) {
+      if (history_.steps()[i - 1].guides_numbers) passage.replace(i, std::move(proposed_[guided_anew++]));
+    }
     return true;
   }
 
@@ -191,6 +198,13 @@ class Moves {
   bool still_brings(Passage<Model>& passage, State& after) {
     double ratio = 1;
     for (std::size_t i = 1; i < passage.size(); ++i) {
+      if (history_.steps()[i - 1].guides_numbers) {
+        ratio *= guided(i, passage.block(i), after);
+        if (ratio <= 0) return false;
+        states_.push_back(after);
+        likelihoods_.push_back(proposed_.back().likelihood);
+        continue;
+      }
       const bool is_watched = is_guided(i);
       const auto& before = repeated(passage, i);
       work_ += 2;

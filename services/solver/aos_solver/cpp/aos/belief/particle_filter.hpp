@@ -30,6 +30,7 @@ inline constexpr double nearly_all = 1 - 1e-8;          // of the weight, which 
 inline constexpr double few_effective = 0.2 * particle_count;
 inline constexpr double few_origins = 250;
 inline constexpr double too_few_effective = 250;
+inline constexpr double least_gain = 0.8;               // of moves; those that lose more are not taken
 inline constexpr double surprise = 0.75;                // an observation that leaves less of the effective samples
 inline constexpr std::size_t rescue_effort = 4;         // of moves before an observation
 inline constexpr int max_rescues = 2;
@@ -65,6 +66,7 @@ class ParticleFilter {
   // Begins a history with particles. Their weights are known exactly, or are worth one sample each.
   Cloud<Model> begun(const List<Particle<Model>>& particles, bool exact) {
     Cloud<Model> cloud{particles, {}, History<Model>{particles}};
+    if (particles.size() <= few_states) cloud.history.note_all_origins();
     for (std::size_t i = 0; i < particles.size(); ++i) {
       Block block{{cloud.history.origin_value(i, random_)}, 0, 1, 1};
       cloud.lineages.push_back({exact ? 0 : particles[i].weight * particles[i].weight, begun_trace(std::move(block))});
@@ -162,8 +164,9 @@ class ParticleFilter {
     Cloud<Model> after = moved(cloud, cloud.effective(), 1);
     const double gain = is_few ? after.effective() / cloud.effective()
                                : after.effective_origins() / cloud.effective_origins();
-    // Moved particles are mixed better than they were, also where they are worth as many samples.
-    if (gain >= 1) cloud = std::move(after);
+    // Moved particles are mixed better than they were, also where they are worth as many samples. To take only what gains would
+    // prefer beliefs that are more even.
+    if (gain >= least_gain) cloud = std::move(after);
     cloud.history.note_moves(gain > 1.1);
   }
 
@@ -283,6 +286,7 @@ class ParticleFilter {
       else draw(parent, step, gathered);
     }
     update_effort.steps += guided.runs();
+    step.guides_numbers = guided.meets_numbers();
     return gathered.updated(before, step, particle_count, random_);
   }
 

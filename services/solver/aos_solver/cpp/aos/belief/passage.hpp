@@ -69,6 +69,8 @@ class Passage {
     states_.resize(place);
     states_.insert(states_.end(), states.begin(), states.end());
   }
+  // Another block, with the same state after it.
+  void replace(std::size_t place, Block block) { set(place, std::move(block)); }
   // Another origin, and the states after it. The later blocks were repeated with these likelihoods, and draw from the same
   // weights as before.
   void refresh(Block origin, const List<State>& states, const List<double>& likelihoods) {

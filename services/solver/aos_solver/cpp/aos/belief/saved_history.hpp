@@ -48,7 +48,7 @@ class WordReader {
 inline void add_step(Words& words, const HistoryStep& step) {
   words.push_back(step.action);
   words.push_back(step.observation);
-  words.push_back((step.is_observed ? 1 : 0) | (step.is_guided ? 2 : 0));
+  words.push_back((step.is_observed ? 1 : 0) | (step.is_guided ? 2 : 0) | (step.guides_numbers ? 4 : 0));
   words.push_back(step.by_chance);
   add_text(words, observation_text(step.observation));
   words.push_back(std::bit_cast<std::uint64_t>(step.log_scale));
@@ -67,6 +67,7 @@ inline std::pair<HistoryStep, std::string> next_step(WordReader& reader) {
   const std::uint64_t flags = reader.next();
   step.is_observed = (flags & 1) != 0;
   step.is_guided = (flags & 2) != 0;
+  step.guides_numbers = (flags & 4) != 0;
   step.by_chance = static_cast<std::uint32_t>(reader.next());
   std::string text = reader.text();
   step.log_scale = reader.real();
