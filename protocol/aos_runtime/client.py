@@ -267,8 +267,13 @@ class AosClient(SteeringQuestions):
                     return entry
 
     async def _entry(self, mission: str) -> messages.MissionEntry | None:
+        """The entry of a mission; None while it has not begun, or nobody answers."""
         try:
-            return _found(await self.missions(), mission)
+            missions = await self.missions()
+            is_known = any(entry.mission == mission for entry in missions.entries)
+            if not is_known and (await self.mission_state()).mission == mission:
+                return None
+            return _found(missions, mission)
         except (LateAnswerError, NobodyAnswersError, LostAnswerError):
             return None  # There is news when it is back.
 

@@ -7,7 +7,7 @@ import sys
 import pytest
 from gateway import environment
 from places import DEPLOY, ROOT
-from processes import finished
+from processes import finished, until_ended
 
 from aos_deploy.started_system import started_system
 from aos_protocol.errors import DeployError
@@ -64,3 +64,40 @@ async def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(tmp_path):
         async with started_system(wrong, runs=tmp_path / "runs"):
             pass
     assert raised.value.code == "AOS801"
+
+
+async def test_a_system_that_was_started_can_be_asked_for_its_mission_at_once(tmp_path):
+    async with started_system(_tiger(tmp_path, "model"), runs=tmp_path / "runs") as aos:
+        state = await aos.mission_state()
+        entry = await aos.until_ended(state.mission)
+    assert (entry.ending, entry.steps) == ("step_limit", 2)
+
+
+async def test_a_system_that_comes_to_no_mission_says_why_and_nobody_waits_for_it(tmp_path):
+    with pytest.raises(DeployError, match=r"robot\.py has no lissen") as raised:
+        await _watch_the_end(tmp_path, _tiger(tmp_path, "{python: robot.py:lissen}"))
+    assert raised.value.code == "AOS801"
+
+
+async def test_a_system_whose_skills_nobody_serves_says_so_at_the_end_of_the_block(tmp_path):
+    with pytest.raises(DeployError, match="no adapter answers calls of /open") as raised:
+        await _watch_the_end(tmp_path, _tiger(tmp_path, "{python: robot.py:listen}", others=""))
+    assert raised.value.code == "AOS807"
+
+
+async def _watch_the_end(folder, deploy):
+    """Starts a system, and does nothing until its aos-up has ended."""
+    async with started_system(deploy, runs=folder / "runs"):
+        (run,) = folder.glob("runs/2*/run.json")
+        await until_ended([json.loads(run.read_bytes())["pid"]])
+
+
+def _tiger(folder, served, others='"*": model'):
+    """The deploy file of the tiger problem, whose listening is `served` so."""
+    (folder / "robot.py").write_text("def listen(call):\n    return {}\n")
+    deploy = folder / "tiger.yaml"
+    deploy.write_text(
+        f"aos: 1\nrobot: tiger\nbundles: [{DEPLOY / 'bundles/bench/tiger'}]\n"
+        f"mission: {{step_limit: 2}}\nbind: {{/listen: {served}, {others}}}\n"
+    )
+    return deploy
