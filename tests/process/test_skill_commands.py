@@ -21,7 +21,7 @@ async def look(call):
 
 async def take(call, side):
     call.progress(0.5, "reaching out")
-    return {"success": side == "Right"}
+    return {"success": side == "Right", "picture": b"\\xff", "force_n": float("nan")}
 """
 DEPLOY = """\
 aos: 1
@@ -93,6 +93,10 @@ def test_a_mission_that_holds_can_be_helped_by_hand_and_goes_on(mission: Running
     called = mission.aos("skill", "call", "/take", "side=Right")
     assert '"success": true' in called
     assert "executing   50%  reaching out" in called
+    assert '"picture": "b\'\\\\xff\'"' in called
+    assert '"force_n": NaN' in called
+    as_json = mission.aos("skill", "call", "/take", "side=Right", "--json")
+    assert {"success": True, "picture": "/w==", "force_n": None} in map(json.loads, as_json.splitlines())
     assert "the lens is dirty" in mission.aos("skill", "call", "look")
     nobody = mission.aos("skill", "call", "lok")
     assert "AOS505: no adapter serves /lok. Did you mean `look`?" in nobody

@@ -3,6 +3,7 @@
 import asyncio
 import json
 import time
+from functools import partial
 from typing import Annotated, Any
 
 import msgspec
@@ -116,7 +117,8 @@ def call(
                 raise
             finally:
                 telling.cancel()
-        typer.echo(json.dumps(result.fields, indent=None if as_json else 2))
+        as_text = partial(json.dumps, indent=2, default=str)  # People see NaN and bytes as they are.
+        typer.echo((msgspec.json.encode if as_json else as_text)(result.fields))
 
     system.do(work)
 
