@@ -14,6 +14,7 @@ from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import EngineDefectError, ModelError
 from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
+from aos_solver.child.blame import slow_code
 from aos_solver.child.engine import Engine
 from aos_solver.child.process.engine_child import PRINT_LIMIT_BYTES, EngineChild, EngineStart
 from aos_solver.mission.models.model_shelf import ModelShelf
@@ -108,12 +109,50 @@ async def test_code_that_makes_steps_slow_is_told_at_its_statement():
 
 
 async def test_of_slow_code_in_many_places_the_environment_document_is_told():
-    changes, moves, earns = (slow(name, 15_000_000) for name in ("state_.count", "state__.count", "__reward"))
+    # Two steps look at the special states three times: each place takes a third.
+    changes, moves = (slow(name, 30_000_000) for name in ("state_.count", "state__.count"))
+    earns = slow("__reward", 20_000_000)
     documents = counting("lamp", "press", code=moves, steps="1000")
     documents["lamp.ef"] += f"{earns}\n\nextrinsic_code:\n{changes}\n"
     refusal = await refused(documents)
     assert (refusal.code, refusal.span.file) == ("AOS211", "lamp.ef")
     assert "no one place" in refusal.message
+
+
+class SeenEngine:
+    """An engine whose running piece of code and processor time are those of each look."""
+
+    def __init__(self, looks: list[tuple[int, float]]):
+        self.looks = looks
+        self.is_done = asyncio.Event()
+
+    @property
+    def running_piece(self) -> int:
+        return self.looks[0][0]
+
+    def ran_s(self) -> float:
+        if len(self.looks) > 1:
+            return self.looks.pop(0)[1]
+        self.is_done.set()
+        return self.looks[0][1]
+
+    async def begin(self, deadline_s: float) -> None: ...
+
+    async def ask(self, *question: object) -> None:
+        await self.is_done.wait()
+
+    async def close(self) -> None: ...
+
+
+async def test_time_in_which_nobody_could_look_is_shared_by_the_code_before_and_after(monkeypatch):
+    seen = SeenEngine([(1, 0.0), (1, 1.0), (2, 5.0), (2, 6.0)])
+
+    async def launched(*start: object) -> SeenEngine:
+        return seen
+
+    monkeypatch.setattr(EngineChild, "launch", launched)
+    spent_s = await slow_code._times_s(await built_text(LAMP), EngineStart(seed=1, policy="widen"))
+    assert spent_s == {1: 3.0, 2: 3.0}
 
 
 async def test_an_engine_that_does_not_understand_says_so(tmp_path):

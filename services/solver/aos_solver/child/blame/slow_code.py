@@ -62,7 +62,8 @@ async def _slow_statement(
 async def _times_s(built: BuiltModel, start: EngineStart) -> dict[int, float]:
     """The processor times by the number of the code that ran, 0 for the engine's own.
 
-    It is no real time: others may have the processor for long while a piece runs.
+    It is no real time: others may have the processor for long while a piece runs. They may also keep it from
+    whoever looks, so the time between two looks is shared by what ran at both.
     """
     child = await EngineChild.launch(built, start, _PERIODS)
     times_s: dict[int, float] = {}
@@ -70,13 +71,13 @@ async def _times_s(built: BuiltModel, start: EngineStart) -> dict[int, float]:
         await child.begin(_DEADLINE_S)
         command = command_line("rate", seconds=_STEPS_S, seed=start.seed)
         asking = asyncio.create_task(child.ask(command, dict, _DEADLINE_S))
-        before_s = child.ran_s()
+        before, before_s = child.running_piece, child.ran_s()
         while not asking.done():
-            piece = child.running_piece
             await asyncio.wait({asking}, timeout=_LOOK_PERIOD_S)
-            ran_s = child.ran_s()
-            times_s[piece] = times_s.get(piece, 0.0) + max(ran_s - before_s, 0.0)
-            before_s = ran_s
+            piece, ran_s = child.running_piece, child.ran_s()
+            for each in (before, piece):
+                times_s[each] = times_s.get(each, 0.0) + max(ran_s - before_s, 0.0) / 2
+            before, before_s = piece, ran_s
         asking.result()
     except ModelError as error:
         log.info("slow code ended: %s", error)
