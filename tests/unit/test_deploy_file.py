@@ -133,11 +133,19 @@ def test_mistakes_about_programs_are_told_at_their_place(folder: Path, part, fou
     assert said.startswith(found)
 
 
-@pytest.mark.parametrize("name", ["solver", "arm", "two words"])
-def test_a_program_has_a_name_of_its_own(folder: Path, name):
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [
+        ("solver", "AOS has these names for itself: router, registry"),
+        ("watcher", "AOS has these names for itself: router, registry"),
+        ("arm", "An adapter has this name"),
+        ("two words", "Use letters, digits, - and _"),
+    ],
+)
+def test_a_program_has_a_name_of_its_own(folder: Path, name, hint):
     text = f"{HEAD}adapters: {{arm: {{command: [./arm]}}}}\nbind: {{/drive: arm}}\n"
     (finding,) = findings(folder, f"{text}programs: {{{name}: {{command: [a]}}}}\n")
-    assert f"AOS126 {name!r} is no name for a program" in finding
+    assert f"AOS126 {name!r} is no name for a program. {hint}" in finding
 
 
 def test_what_a_deploy_file_starts_is_looked_for_before_it_is_started(folder: Path):
@@ -231,7 +239,7 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills():
             "bind: {'*': {pybullet: /go, fields: {}}}",
             '4:13 AOS106 bind.* says more than an adapter\'s name. Write it as "*": pybullet',
         ),
-        ("adapters: {solver: external}", "4:12 AOS126 'solver' is no name for an adapter"),
+        ("adapters: {solver: external}", "4:12 AOS126 'solver' is no name for an adapter. AOS has"),
         ("adapters: {sim: {pybullet: a.yaml, wrld: b}}", "4:36 AOS102 unknown key adapters.sim.wrld"),
         ("bind: {/drive: command}", "1:1 AOS105 the adapter command has no command"),
         ("world: nowhere.yaml", "4:8 AOS101 there is no world file"),

@@ -1,6 +1,6 @@
 """The deploy file's `adapters:` and `bind:`: which adapters there are, and what each of them serves."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import msgspec
@@ -31,9 +31,21 @@ EVERYTHING_ELSE = "*"
 SPANS = "spans"
 """The process that sends spans to a collector."""
 
-TAKEN = ("router", "registry", "middleware", "solver", "aos-up", SPANS, OPERATOR, WATCHER)
+_OURS_ALONE = ("router", "registry", "middleware", "solver", "aos-up", SPANS, OPERATOR, WATCHER)
 """The names of our own processes, and of those who command and look on."""
 _BINDING_KEYS = ("fields", "result")
+
+
+def how_to_name(name: str, adapters: Iterable[str] = ()) -> str:
+    """Returns what to do about the name of an adapter or a program; nothing where it can be used.
+
+    `adapters` are the others, whose names a program cannot have.
+    """
+    if name in _OURS_ALONE:
+        return f"AOS has these names for itself: {', '.join(_OURS_ALONE)}"
+    if name in adapters:
+        return "An adapter has this name"
+    return "" if NAME.fullmatch(name) else "Use letters, digits, - and _"
 
 
 class AdapterPlan(msgspec.Struct, frozen=True, kw_only=True):
@@ -128,10 +140,8 @@ def _named(node: YamlNode | None, findings: Findings) -> dict[str, AdapterPlan]:
     for name, item in node.entries.items() if isinstance(node, YamlMap) else ():
         assert isinstance(node, YamlMap)
         where = node.keys[name]
-        if not NAME.fullmatch(name) or name in TAKEN:
-            findings.error(
-                "AOS126", f"{name!r} is no name for an adapter", where, "Use letters, digits, - and _"
-            )
+        if hint := how_to_name(name):
+            findings.error("AOS126", f"{name!r} is no name for an adapter", where, hint)
         elif (plan := _plan(name, item, where, findings)) is not None:
             plans[name] = plan
     return plans

@@ -1,17 +1,17 @@
 """The deploy file's `programs:`: what runs beside the adapters, such as a simulator or a launch file."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection
 from typing import Annotated, Literal
 
 import msgspec
 
+from aos_deploy.deployment.adapters import how_to_name
 from aos_deploy.deployment.hosts import check_host
 from aos_deploy.deployment.typed import plain_value
 from aos_deploy.deployment.yaml_source import YamlMap
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
-from aos_protocol.keys import NAME
 
 Seconds = Annotated[float, msgspec.Meta(gt=0, le=1e9)]
 Port = Annotated[int, msgspec.Meta(ge=1, le=65535)]
@@ -71,15 +71,14 @@ class ProgramPart(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def check_programs(
-    programs: dict[str, ProgramPart], node: YamlMap, findings: Findings, other_names: Iterable[str]
+    programs: dict[str, ProgramPart], node: YamlMap, findings: Findings, adapters: Collection[str]
 ) -> None:
-    """Adds findings about what the types alone cannot say. `other_names` are those of other processes."""
+    """Adds findings about what the types alone cannot say. `adapters` are the names of adapters."""
     given = node.entries.get("programs")
     places = given.keys if isinstance(given, YamlMap) else {}
     for name, part in programs.items():
         where = places[name]
-        if not NAME.fullmatch(name) or name in other_names:
-            hint = "Use letters, digits, - and _, and no name of an adapter or a service"
+        if hint := how_to_name(name, adapters):
             findings.error("AOS126", f"{name!r} is no name for a program", where, hint)
         if not part.command:
             hint = "Write it as programs: {NAME: {command: [PROGRAM, ARGUMENT]}}"

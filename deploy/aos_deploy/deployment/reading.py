@@ -11,7 +11,7 @@ from pathlib import Path
 import msgspec
 from msgspec.structs import replace
 
-from aos_deploy.deployment.adapters import TAKEN, AdapterPlan, played_by_model, read_adapters
+from aos_deploy.deployment.adapters import AdapterPlan, played_by_model, read_adapters
 from aos_deploy.deployment.folder import absolute, deploy_file_at, is_file, is_folder, is_there, named
 from aos_deploy.deployment.hosts import is_collector_address
 from aos_deploy.deployment.mission_values import snippet_of, values_of_node
@@ -139,7 +139,7 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
     if watch is not None and is_there(watch) and not is_folder(watch):
         findings.error("AOS106", f"watch: {named(watch)} is no folder", _place(node, "watch"))
     adapters = read_adapters(node, findings, str(world) if world else "")
-    check_programs(file.programs, node, findings, (*TAKEN, *file.adapters, *(plan.name for plan in adapters)))
+    check_programs(file.programs, node, findings, {*file.adapters, *(plan.name for plan in adapters)})
     return Deployment(
         path=path,
         file=file,
