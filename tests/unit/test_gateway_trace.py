@@ -51,6 +51,12 @@ def test_the_margin_is_over_the_best_of_the_other_actions():
     )
 
 
+@pytest.mark.parametrize("value", [45.16546243254006, -123456.784])
+def test_a_value_has_the_decimals_that_the_values_of_the_decision_have(value):
+    shown = row_of(decided(1, actions=(ActionValue("look", value, 1, 0.0),))).value
+    assert f"{shown:.2f}" == f"{value:.2f}"
+
+
 def test_a_choice_that_bounds_tell_apart_is_proven_whatever_the_errors_are():
     chosen = ActionValue("look", 38.0, 1, 19.0, 37.9, 38.1)
     apart = (chosen, ActionValue("open", 31.7, 1, 19.0, 31.6, 31.8))

@@ -245,4 +245,5 @@ def _probability(value: float) -> float:
 
 
 def _short(value: float) -> float | None:
-    return float(f"{value:.5g}") if math.isfinite(value) else None
+    """Nine digits: the two decimals that people see are those of the record, of thousands, too."""
+    return float(f"{value:.9g}") if math.isfinite(value) else None
