@@ -29,7 +29,7 @@ class System(NamedTuple):
     def is_at_endpoint(self) -> bool:
         """True if an endpoint was named; AosError where the robot there was not."""
         if self.connect and not self.robot:
-            raise DeployError("which robot?", hint="Name it with --robot")
+            raise DeployError("which robot?", code="AOS901", hint="Name it with --robot")
         return bool(self.connect)
 
     def do(self, work: Callable[[AosClient], Awaitable[T]], *, user: str = OPERATOR) -> T:

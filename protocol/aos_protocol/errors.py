@@ -15,7 +15,7 @@ compares no codes:
                       LateAnswerError, NobodyAnswersError, LostAnswerError
       StorageError    AOS7xx  journal or catalogue
       DeployError     AOS8xx  deploy file, start-up, supervision
-      GatewayError    AOS9xx  a request over HTTP that cannot be answered
+      GatewayError    AOS9xx  a request over HTTP, or a command, that cannot be answered
 
 A user's mistakes are collected as diagnostics; an AosError may carry them.
 """

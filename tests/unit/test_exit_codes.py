@@ -1,9 +1,10 @@
 import pytest
+from commands import aos
 from decision_records import decision_record
 
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
 from aos_deploy.runs.end import Account
-from aos_protocol.errors import error_from_code
+from aos_protocol.errors import DeployError, error_from_code
 from aos_protocol.messages import MissionState
 
 
@@ -46,3 +47,12 @@ def test_a_fault_counts_by_when_it_happens(code, before, after):
     late = account.stopped("m", error)
     assert late is not None
     assert exit_code_of_mission(late) == after == ExitCode.FAULT
+
+
+@pytest.mark.parametrize(
+    "command", ["logs --run nowhere", "drift nowhere", "decisions --connect tcp/127.0.0.1:1"]
+)
+def test_what_a_command_is_asked_wrongly_is_no_fault_of_a_deploy_file(command):
+    done = aos(*command.split())
+    assert isinstance(done.exception, DeployError | SystemExit)
+    assert (done.exit_code, "AOS901" in f"{done.exception} {done.output}") == (1, True)

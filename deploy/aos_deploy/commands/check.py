@@ -34,7 +34,9 @@ def check(
     """
     directory = chosen_run(run, runs or runs_here())
     if directory.is_running:
-        raise DeployError(f"{from_here(directory.named)} goes on", hint="Check it when it has ended")
+        raise DeployError(
+            f"{from_here(directory.named)} goes on", code="AOS901", hint="Check it when it has ended"
+        )
     checked = check_run(directory.path)
     found = checked.violations
     again = _replayed(directory.path) if replay else Replay(remark="not asked for")

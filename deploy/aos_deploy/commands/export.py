@@ -80,7 +80,7 @@ def _mcap(runs: list[Path], output: Path | None) -> dict[Path, str]:
     from aos_deploy.export.mcap_file import write_mcap
 
     if output is not None and len(runs) > 1 and output.suffix:
-        raise DeployError("one MCAP file holds one run", hint="Name a folder with --output")
+        raise DeployError("one MCAP file holds one run", code="AOS901", hint="Name a folder with --output")
     written: dict[Path, str] = {}
     for run in runs:
         name = run.resolve().name

@@ -88,4 +88,4 @@ def _refuse_unknown(services: list[str], run: RunDirectory) -> None:
     for name in services:
         if name not in known:
             hint = f"{did_you_mean(name, known)} It has {', '.join(known)}".strip()
-            raise DeployError(f"the run {run.path.name} has no log of {name}", hint=hint)
+            raise DeployError(f"the run {run.path.name} has no log of {name}", code="AOS901", hint=hint)

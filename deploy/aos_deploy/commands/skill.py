@@ -235,12 +235,12 @@ def _lines(row: dict[str, Any]) -> str:
 
 
 def _values(texts: list[str]) -> dict[str, Any]:
-    """Fields from NAME=VALUE; DeployError AOS801 for anything else."""
+    """Fields from NAME=VALUE; DeployError AOS901 for anything else."""
     values = {}
     for text in texts:
         name, mark, value = text.partition("=")
         if not mark:
-            raise DeployError(f"{text!r} is no field", hint="Write fields as NAME=VALUE")
+            raise DeployError(f"{text!r} is no field", code="AOS901", hint="Write fields as NAME=VALUE")
         try:
             values[name] = json.loads(value)
         except ValueError:

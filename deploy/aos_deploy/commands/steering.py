@@ -95,10 +95,10 @@ def actions_of_script(file: Path) -> tuple[str, ...]:
         lines = file.read_text().splitlines()
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", "it is no text")
-        raise DeployError(f"{file} cannot be read: {why}") from error
+        raise DeployError(f"{file} cannot be read: {why}", code="AOS101") from error
     actions = tuple(line for line in (text.partition("#")[0].strip() for text in lines) if line)
     if not actions:
-        raise DeployError(f"{file} has no action", hint="Write one grounded action a line")
+        raise DeployError(f"{file} has no action", code="AOS901", hint="Write one grounded action a line")
     return actions
 
 

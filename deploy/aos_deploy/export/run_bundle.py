@@ -56,11 +56,11 @@ def write_bundle(runs: Sequence[Path], target: Path) -> int:
 def opened_bundle(path: Path) -> list[Path]:
     """The run directories in a bundle, the oldest first, unpacked into the cache directory once.
 
-    DeployError AOS801 for a file that is no bundle, has ways out of it, or more than such a file may have.
+    DeployError AOS901 for a file that is no bundle, has ways out of it, or more than such a file may have.
     """
     if path.is_dir():
         hint = f"A folder of runs goes behind an option: --runs {path}"
-        raise DeployError(f"{path} is a folder, and no file of runs", hint=hint)
+        raise DeployError(f"{path} is a folder, and no file of runs", code="AOS901", hint=hint)
     try:
         digest = hashlib.blake2b(path.read_bytes(), digest_size=16).hexdigest()
         folder = cache_dir() / "opened" / digest
@@ -154,4 +154,4 @@ def _database(path: Path) -> bytes:
 
 def _no_bundle(path: Path, why: str) -> DeployError:
     hint = "`aos export RUN --format bundle` writes one"
-    return DeployError(f"{path} is not a file of runs: {why}", hint=hint)
+    return DeployError(f"{path} is not a file of runs: {why}", code="AOS901", hint=hint)

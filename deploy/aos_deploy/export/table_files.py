@@ -30,14 +30,16 @@ def write_csv(rows: Iterable[Row], folder: Path) -> dict[str, int]:
 def write_parquet(rows: Iterable[Row], folder: Path) -> dict[str, int]:
     """Writes `<table>.parquet` for each table into a folder; the numbers of their rows.
 
-    DeployError AOS801 where pyarrow is not installed.
+    DeployError AOS805 where pyarrow is not installed.
     """
     try:
         import pyarrow as pa
         import pyarrow.parquet as pq
     except ImportError as error:
         hint = "Install it: pip install 'aos-autonomy[parquet]', or take --format csv"
-        raise DeployError("Parquet needs pyarrow, which is not installed", hint=hint) from error
+        raise DeployError(
+            "Parquet needs pyarrow, which is not installed", code="AOS805", hint=hint
+        ) from error
     types = {str: pa.string(), int: pa.int64(), float: pa.float64(), bool: pa.bool_()}
     counts = dict.fromkeys(TABLES, 0)
     with ExitStack() as files:

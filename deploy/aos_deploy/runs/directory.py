@@ -186,7 +186,7 @@ class RunDirectory:
             link.replace(self.path.with_name(LATEST))
 
     def read_record(self) -> RunRecord:
-        """Returns the record; DeployError AOS801 if this is not a run directory."""
+        """Returns the record; DeployError AOS901 if this is not a run directory."""
         path = self.path / "run.json"
         try:
             return msgspec.json.decode(path.read_bytes(), type=RunRecord)
@@ -197,10 +197,12 @@ class RunDirectory:
             if self.path in mission_folders(run).values():
                 hint = f"Name {run} instead, and --mission {self.path.name} where the command takes it"
             raise DeployError(
-                f"{self.path} is not a run directory: {path.name} cannot be read, {error.strerror}", hint=hint
+                f"{self.path} is not a run directory: {path.name} cannot be read, {error.strerror}",
+                code="AOS901",
+                hint=hint,
             ) from error
         except UNREADABLE as error:
-            raise DeployError(f"{path}: {error}") from error
+            raise DeployError(f"{path}: {error}", code="AOS901") from error
 
     def write_summary(self, summary: Summary, number: int = 0) -> None:
         """Writes the summary of the run, or of a mission in a system that stays.

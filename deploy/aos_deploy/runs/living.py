@@ -68,8 +68,7 @@ def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
     What is named may also be a file of runs, as `aos export --format bundle` writes one, with one run.
     `runs` is the folder to look in; without one `runs` here comes first, then whatever goes on anywhere,
     which is told.
-    DeployError AOS901 if that is not one alone, AOS801 if the one named is none; BusError AOS605 if there
-    is none.
+    DeployError AOS901 if that is not one alone, or the one named is none; BusError AOS605 if there is none.
     """
     if run is not None:
         named = RunDirectory(_opened(run) if run.is_file() else run, run)
