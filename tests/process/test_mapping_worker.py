@@ -147,7 +147,7 @@ async def test_a_killed_worker_is_replaced_for_the_next_activation(evaluator: St
     workers = descendants(mapping.pid)
     os.kill(mapping.pid, signal.SIGKILL)
     await until_ended(workers)
-    with pytest.raises(MappingFault) as fault:
+    with pytest.raises(MappingFault, match="the worker was killed by signal 9") as fault:
         await mapping.finish({})
     assert fault.value.code == "AOS401"
     await mapping.begin({})

@@ -251,6 +251,10 @@ class Evaluator:
         place = self._place_in(trace)
         if status == -signal.SIGALRM:
             return self._fault("AOS403", f"this took more than {limit_s:g} s and was stopped", place)
+        if status == -signal.SIGKILL:
+            return self._fault(
+                "AOS401", "the worker was killed by signal 9: by somebody, or for memory", place
+            )
         how = f"by signal {-status}" if status < 0 else f"with status {status}"
         if status == 1 and not trace and (said := self._written_to_log().strip().rpartition("\n")[2]):
             how += f" and said: {said}"
