@@ -21,7 +21,15 @@ _SUFFIXES = {
     DocumentKind.LOW_LEVEL: ".lf",
 }
 _NOT_COMPARED = frozenset(
-    {"span", "index_span", "type_span", "value_spans", "source_span", "response_variable_span"}
+    {
+        "span",
+        "index_span",
+        "low_level_span",
+        "type_span",
+        "value_spans",
+        "source_span",
+        "response_variable_span",
+    }
 )
 
 

@@ -32,7 +32,7 @@ MISUSES = {
     "map variable": Rule("room.json", '"«IsArray": true→Parameters": ["§(0,3)"]»,', "AOS106"),
     "anyValue": Rule(
         "room.json",
-        '{"Name": "§pose", "Type": "anyValue", "UnderlineLocalVariableType": "«Pose→Pos»"}',
+        '{"Name": "pose", "Type": "anyValue", "UnderlineLocalVariableType": "§«Pose→Pos»"}',
         "AOS110",
     ),
     "EnvironmentGlue constant": Rule(

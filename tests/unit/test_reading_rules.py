@@ -104,6 +104,8 @@ WARNED = [
     Rule("go.json", "{0.9, 0.1})§«;→»", "AOS127"),
     Rule("go.json", "oDoor.room§«;→» }", "AOS127"),
     Rule("go.json", "__reward = -1;«→ if (__reward) return; §elseif (state.closed[1]) return;»", "AOS127"),
+    Rule("room.ef", "«AOS.Bernoulli(0.5) ? 1 : 0;→0; vector<double> w = §{0.5, 0.4};\n"
+         "state.steps[0] = AOSUtils::SampleDiscrete(w);»", "AOS122", title="weights that have a name"),
     Rule("go.json", '§"«→RequiredResources": [], "»DynamicModel"', "AOS102"),
     Rule("go glue.json", '§«""→true»}', "AOS127"),
     Rule("go glue.json", '"ModuleResponse": {§«→"EnumResponse": [], »', "AOS102"),
@@ -124,6 +126,7 @@ REFUSED = [
     Rule("go.json", '"eWell", "«eBadly→eDone»"]', "AOS126", title="a hidden response"),
     Rule("go.json", "__meetPrecondition =§«→\u00a0»", "AOS108", title="blank"),
     Rule("room.json", '"«IsArray": true→Parameters": ["tRom"]»,', "AOS110", title="keys of no enum"),
+    Rule("room.json", '"§«IsArray→IsAray»": true', "AOS102"),
     Rule("go.json", "§{«0.9, 0.1→0.5, 0.3, 0.2»}", "AOS122"),
     Rule("go.json", "§{«0.9, 0.1→1»}", "AOS122"),
     Rule("go.json", "AOS.SampleDiscrete(§«tEnd→tEdn»", "AOS110"),

@@ -230,12 +230,19 @@ def test_the_emitted_functions_stand_at_the_documents_lines():
         ("'sqr' was not declared in this scope; did you mean 'sqrt'?", "sqr", "sqrt"),
         ("'tool' was not declared in this scope; did you mean 'bool'?", "tool", "state.tool"),
         ("'is_dug' was not declared in this scope", "is_dug", "state.is_dug"),
+        (
+            "'retrun' was not declared in this scope\nm.cpp:{line}:1: error: void value not ignored",
+            "retrun",
+            "return",
+        ),
     ],
 )
 def test_a_misspelt_name_is_told_with_one_that_documents_have(said, name, hint):
     emitted = emit(program())
     line = next(n for n, text in enumerate(emitted.cpp.split("\n"), 1) if "slips(AOS, 2)" in text)
-    (error,) = read_messages(f"m.cpp:{line}:6: error: {said}\n", "m.cpp", emitted).diagnostics
+    (error,) = read_messages(
+        f"m.cpp:{line}:6: error: {said.format(line=line)}\n", "m.cpp", emitted
+    ).diagnostics
     assert (error.message, error.hint) == (
         f"`{name}` was not declared",
         f"Did you mean `{hint}`?" if hint else "",
@@ -249,6 +256,12 @@ def test_a_misspelt_name_is_told_with_one_that_documents_have(said, name, hint):
         ("'elif' was not declared in this scope", "`elif` was not declared", "C++ writes `else if`"),
         ("use of undeclared identifier 'True'", "use of undeclared identifier `True`", "C++ writes `true`"),
         ("'TRUE' was not declared in this scope", "`TRUE` was not declared", "C++ writes `true`"),
+        (
+            "no match for 'operator[]' (operand types are "
+            "'aos::Map<aos::Vector<aos::Pair<aos::Text, int>, 2> >' and 'Tool')",
+            "no match for `operator[]` (operand types are `map<string, int>` and `Tool`)",
+            "",
+        ),
         ("expected ';' before 'AND'", "expected `;` before `AND`", "C++ writes `&&`"),
         (
             "expected ';' before 'in'\nm.cpp:{line}:9: error: use of 'p' before deduction of 'auto'",

@@ -189,6 +189,13 @@ def test_a_line_that_does_nothing_and_a_field_of_a_number_are_told(lines, told):
     assert sorted(texts) == sorted(told)
 
 
+def test_a_misspelt_method_of_a_text_is_told_with_the_one_that_is_near():
+    declared = "local_variable: place\ntype: string\nfrom_ros_service_response: true\ncode:\n"
+    mapping = MAPPING.replace("rule: True", "rule: place.endwith('hall')")
+    told = [one.hint for one in found(mapping=f"{mapping}\n{declared}place = __input.place\n")]
+    assert told == ["Did you mean `endswith`?"]
+
+
 @pytest.mark.parametrize(("imported", "is_told"), [("Far", True), ("*", False), ("FarRequest", False)])
 def test_a_type_called_nearly_as_an_imported_one_is_told(imported, is_told):
     far = f"local_variable: far\nimports: from: m import: {imported}\ntopic: /far\nmessage_type: far\ncode:\n"

@@ -28,12 +28,14 @@ def check_environment_names(environment: Environment, scope: Scope, findings: Fi
         for field in compound.fields:
             element, _, index_enum = array_type(field.type)
             _check_type(element, field.type_span or field.span, scope, findings)
-            _check_low_level_type(field.low_level_type, field.span, scope, findings)
+            _check_low_level_type(field.low_level_type, field.low_level_span or field.span, scope, findings)
             _check_index(index_enum, field.type_span or field.span, scope, findings)
     _check_cycles(environment.compounds, scope, findings)
     for variable in environment.variables:
         _check_type(variable.type, variable.type_span or variable.span, scope, findings)
-        _check_low_level_type(variable.low_level_type, variable.span, scope, findings)
+        _check_low_level_type(
+            variable.low_level_type, variable.low_level_span or variable.span, scope, findings
+        )
         _check_index(variable.index_enum, variable.index_span or variable.span, scope, findings)
         for key in variable.key_types:
             if not key.startswith("(") and key not in scope.enums:

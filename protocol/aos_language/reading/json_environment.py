@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from aos_language.reading.document import array_type, check_name, enum_type, normal_type
 from aos_language.reading.json_blocks import read_block
 from aos_language.reading.json_record import Record
-from aos_language.reading.source import dedented, guarded
+from aos_language.reading.source import Text, dedented, guarded
 from aos_protocol import documents
 from aos_protocol.diagnostics import Span
 
@@ -128,23 +128,31 @@ def _field(record: Record) -> documents.Field | None:
     name, kind = record.text("Name", required=True), record.text("Type", required=True)
     default = record.expression("Default")
     type_name = normal_type(kind, record.findings) if kind else ""
-    low_level_type = _low_level_type(record, type_name)
+    low_level = _low_level_type(record, type_name)
     record.ignore("ML_IgnoreVariable", "ML_MaxPossibleValue", "Comment")
     record.finish()
     if name is None or kind is None:
         return None
     check_name(name, "a field", record.findings)
-    return documents.Field(name.text, type_name, name.span, default, low_level_type, kind.span)
+    return documents.Field(
+        name=name.text,
+        type=type_name,
+        span=name.span,
+        default=default,
+        low_level_type=low_level.text if low_level is not None else None,
+        type_span=kind.span,
+        low_level_span=low_level.span if low_level is not None else None,
+    )
 
 
-def _low_level_type(record: Record, type_name: str) -> str | None:
+def _low_level_type(record: Record, type_name: str) -> Text | None:
     low_level = record.text("UnderlineLocalVariableType")
     if low_level is None:
         return None
     if type_name != "anyValue":
         message = f'"UnderlineLocalVariableType" belongs to anyValue, not to {type_name}'
         record.findings.error("AOS106", message, low_level.span)
-    return low_level.text
+    return low_level
 
 
 def _variable(record: Record) -> documents.StateVariable | None:
@@ -157,7 +165,7 @@ def _variable(record: Record) -> documents.StateVariable | None:
     keys = record.texts("Parameters")
     code = _where_included(record, code)
     type_name = normal_type(kind, record.findings) if kind else ""
-    low_level_type = _low_level_type(record, type_name)
+    low_level = _low_level_type(record, type_name)
     record.ignore("ML_IgnoreVariable", "ML_MaxPossibleValue", "Comment")
     record.finish()
     if value is not None and code is not None:
@@ -185,7 +193,8 @@ def _variable(record: Record) -> documents.StateVariable | None:
         default_value=value,
         default_code=code,
         key_types=tuple(key.text for key in keys),
-        low_level_type=low_level_type,
+        low_level_type=low_level.text if low_level is not None else None,
+        low_level_span=low_level.span if low_level is not None else None,
         type_span=kind.span,
         index_enum=index_enum,
         index_span=index.span if index is not None else kind.span if index_enum else None,

@@ -36,12 +36,12 @@ _BUILT_ON = frozenset({
     "DynamicModel", "EnumName", "EnumValues", "EnvironmentGeneral", "FromGlobalVariable",
     "FromROSServiceResponse", "FromStringLocalVariable", "GlobalVariableModuleParameters",
     "GlobalVariableTypes", "GlobalVariablesDeclaration", "Horizon", "Import", "InitCode",
-    "InputLocalVariable", "IsActionParameterValue", "IsGoalState", "ItemName", "LocalVariableName",
-    "LocalVariableTypes", "LocalVariablesInitialization", "ModuleActivation", "ModuleResponse", "Name",
-    "NextStateAssignments", "Project", "Response", "ResponseRules", "Reward", "RosAction", "RosService",
-    "RosTopicPath", "ServiceFieldName", "ServiceName", "ServiceParameters", "ServicePath",
-    "SpecialStates", "StateConditionCode", "StateFunctionCode", "TempVar", "Type", "TypeName", "Value",
-    "VarName", "VariableType", "Variables",
+    "InputLocalVariable", "IsActionParameterValue", "IsArray", "IsGoalState", "ItemName",
+    "LocalVariableName", "LocalVariableTypes", "LocalVariablesInitialization", "ModuleActivation",
+    "ModuleResponse", "Name", "NextStateAssignments", "Parameters", "Project", "Response", "ResponseRules",
+    "Reward", "RosAction", "RosService", "RosTopicPath", "ServiceFieldName", "ServiceName",
+    "ServiceParameters", "ServicePath", "SpecialStates", "StateConditionCode", "StateFunctionCode",
+    "TempVar", "Type", "TypeName", "Value", "VarName", "VariableType", "Variables",
 })  # fmt: skip
 _HOMES = {
     "FromStringLocalVariable": "ModuleResponse",

@@ -142,7 +142,7 @@ def _field(part: Part, names: Sequence[str]) -> documents.Field | None:
     declaration = read_declaration(part, "a field", names)
     if declaration is None:
         return None
-    rest, low_level_type = _low_level_type(declaration)
+    rest, low_level = _low_level_type(declaration)
     kind = declaration.type
     if (mark := _ARRAY_MARK.match(rest.text)) is not None:
         kind, rest = f"{kind}[{mark[1]}]", rest.after(mark.end())
@@ -158,16 +158,25 @@ def _field(part: Part, names: Sequence[str]) -> documents.Field | None:
     default = _without_learning_scale(rest)
     snippet = expression(default.snippet(), drop_semicolon=True) if default.text else None
     name = declaration.name
-    return documents.Field(name.text, kind, name.span, snippet, low_level_type, declaration.type_text.span)
+    return documents.Field(
+        name=name.text,
+        type=kind,
+        span=name.span,
+        default=snippet,
+        low_level_type=low_level.text if low_level is not None else None,
+        type_span=declaration.type_text.span,
+        low_level_span=low_level.span if low_level is not None else None,
+    )
 
 
-def _low_level_type(declaration: Declaration) -> tuple[Text, str | None]:
+def _low_level_type(declaration: Declaration) -> tuple[Text, Text | None]:
     """Splits the text after the name of an `anyValue` into the rest and the type of `of <low-level type>`."""
     rest = declaration.rest
     match = _LOW_LEVEL_TYPE.search(rest.text) if declaration.type == "anyValue" else None
     if match is None:
         return rest, None
-    return Text(rest.text[: match.start()] + rest.text[match.end() :], rest.span).strip(), match.group(1)
+    low_level = Text(match.group(1), rest.after(match.start(1)).span)
+    return Text(rest.text[: match.start()] + rest.text[match.end() :], rest.span).strip(), low_level
 
 
 def _without_learning_scale(rest: Text) -> Text:
@@ -189,7 +198,7 @@ def _variable(section: Section, names: Sequence[str]) -> documents.StateVariable
     declaration = read_declaration(section, "a variable", names)
     if declaration is None:
         return None
-    rest, low_level_type = _low_level_type(declaration)
+    rest, low_level = _low_level_type(declaration)
     mark = _ARRAY_MARK.fullmatch(rest.text)
     if mark is None and rest.text.lower() not in _ARRAY_WORDS:
         hint = _instead_of(rest.text, declaration)
@@ -211,7 +220,8 @@ def _variable(section: Section, names: Sequence[str]) -> documents.StateVariable
         default_value=expression(default_value, drop_semicolon=True) if default_value else None,
         default_code=code.code() if code is not None else None,
         key_types=_key_types(keys.value, section.findings) if keys is not None else (),
-        low_level_type=low_level_type,
+        low_level_type=low_level.text if low_level is not None else None,
+        low_level_span=low_level.span if low_level is not None else None,
         type_span=declaration.type_text.span,
         index_enum=index_enum,
         index_span=index_span if index_enum else None,

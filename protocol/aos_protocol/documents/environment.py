@@ -30,6 +30,7 @@ class Field(msgspec.Struct, frozen=True):
     default: Snippet | None = None
     low_level_type: str | None = None
     type_span: Span | None = None
+    low_level_span: Span | None = None
 
 
 class CompoundType(msgspec.Struct, frozen=True):
@@ -61,6 +62,7 @@ class StateVariable(msgspec.Struct, frozen=True):
     type_span: Span | None = None
     index_enum: str = ""
     index_span: Span | None = None
+    low_level_span: Span | None = None
     is_mission_parameter: bool = False
 
     @property

@@ -10,7 +10,7 @@ from aos_language.findings import Findings
 from aos_language.local_types import ELEMENTS, local_type
 from aos_language.python_syntax import tree_of
 from aos_protocol import documents
-from aos_protocol.spelling import nearest, quoted
+from aos_protocol.spelling import did_you_mean, nearest, quoted
 
 _OF_NUMBERS = frozenset({"abs", "chr", "float", "int", "round"})
 _PYTHON = {"bool": bool, "int": int, "float": float, "double": float, "string": str}
@@ -132,7 +132,8 @@ def _attribute(
     kind = plain.get(value.id, "")
     if kind and not hasattr(_PYTHON[kind], node.attr):
         message = f"`{value.id}` is of the type {kinds[value.id]}, which has no `{node.attr}`"
-        yield value, message, f"Write `{value.id}` alone"
+        close = did_you_mean(node.attr, dir(_PYTHON[kind]))
+        yield value, message, close or f"Write `{value.id}` alone"
     elif kind and is_tested and callable(getattr(_PYTHON[kind], node.attr)):
         called = f"{value.id}.{node.attr}"
         yield value, f"`{called}` is a function, and counts as true", f"Write `{called}()`"

@@ -126,10 +126,11 @@ def check_weights(
             span = span_of(call.arguments[0])
             findings.error("AOS122", f"{probability:g} is no probability", span, "It lies between 0 and 1")
     elif call.name[1] == "SampleDiscrete" and arguments:
-        weights, rounding = _weights(arguments[-1])
+        place = _written_list(arguments[-1], code) or call.arguments[-1]
+        weights, rounding = _weights(code[place.start : place.end])
         if weights:
             size = enum_sizes.get(arguments[0]) if len(arguments) > 1 else None
-            span = span_of(call.arguments[-1])
+            span = span_of(place)
             _check_list(weights, size, span, findings, rounding if call.name[0] == "AOS" else None)
     elif call.name[1] in ("SampleNormal", "SampleUniform") and len(arguments) == 2:
         first, second = _number(arguments[0]), _number(arguments[1])
@@ -170,6 +171,14 @@ def _check_list(
         # In the original, too, a weight that is missing is 0.
         message = f"{len(weights)} weights for {size} values: those behind them never come"
         findings.warning("AOS122", message, span, "Write 0 for a value that never comes")
+
+
+def _written_list(name: str, code: str) -> Extent | None:
+    """The list that a vector of the code is declared with, where nothing but one draw names it after that."""
+    if not name.isidentifier() or len(re.findall(rf"\b{name}\b", code)) != 2:
+        return None
+    declared = re.search(rf"\bvector\s*<\s*(?:float|double)\s*>\s*{name}\s*=?\s*(\{{[^{{}}]*\}})\s*;", code)
+    return Extent(*declared.span(1)) if declared is not None else None
 
 
 def _weights(text: str) -> tuple[list[float], float]:

@@ -26,6 +26,7 @@ _OF_PYTHON = {"True": "true", "False": "false", "None": "nullptr", "elif": "else
 _OF_PYTHON |= {"TRUE": "true", "FALSE": "false", "null": "nullptr"}
 _OF_PYTHON |= {"Float": "double", "len": "values.size()", "str": "std::string"}
 _OF_PYTHON |= {"AND": "&&", "OR": "||", "in": ":", "is": "=="}
+_OF_STATEMENTS = {"auto", "break", "case", "const", "continue", "default", "return", "switch", "while"}
 _A_TEXT = re.compile(
     r"`const char ?(?:\*|\[\d+\])`.*`(?!const char)|`(?!const char)[\w ]+`.*`const char ?(?:\*|\[\d+\])`"
 )
@@ -45,6 +46,7 @@ _OF_STD = re.compile(r"`std::(\w+)` has not been declared")
 """g++ says this of a parameter, too, where an argument of its type is unknown."""
 _CONSEQUENCES = re.compile(
     r"<expression error>|cannot be set to a list in braces|and these are others"
+    r"|void value not ignored"
     rf"|template argument \d+ is invalid|no match for call to `\(<lambda|{_OF_STD.pattern}"
 )
 """Said too where a name within was not declared."""
@@ -146,7 +148,7 @@ def _advice(name: str, hint: str, emitted: EmittedModel) -> str:
         return f"C++ writes `{_OF_PYTHON[name]}`"
     if name in emitted.names:
         return "It has to stand before its first use"
-    return did_you_mean(name, sorted(emitted.names - {name})) if name else ""
+    return did_you_mean(name, sorted((emitted.names | _OF_STATEMENTS) - {name})) if name else ""
 
 
 def _may_be_meant(hint: str, emitted: EmittedModel) -> bool:

@@ -73,6 +73,7 @@ _WORDS = (
     (re.compile(r"(?:const )?(?:class )?aos::Vector<(.+?), \d+>"), r"vector<\1>"),
     (re.compile(r"(?:const )?(?:class )?aos::Named<(\w+), \d+, ([^<>]+)>"), r"array of \2 over \1"),
     (re.compile(r"(?:const )?(?:class )?aos::Text\b"), "string"),
+    (re.compile(r"(?:const )?(?:class )?aos::Map<vector<aos::Pair<(.+?)> ?> ?>"), r"map<\1>"),
     (re.compile(r"aos::Objects<\w+, (\w+)[^<>]*>"), r"list of \1"),
     (re.compile(r"std::(?:__cxx11::)?basic_string<char>"), "std::string"),
     (re.compile(r"`<brace-enclosed initializer list>`"), "a list in braces"),
