@@ -1,5 +1,5 @@
 // Model of the project kettle: 4 state variables, 1 skills.
-// Emitted by aos 0.1.0 from the documents of digest 0167cb5f829eb092. Change the documents, not
+// Emitted by aos 0.1.0 from the documents of digest ce84e619a79ac22b. Change the documents, not
 // this file; `aos inspect BUNDLE --stage cpp` writes it anew. The #line directives give the documents' lines.
 // Names that begin with `aos_` are this file's own. `aos::blame::at(N)` notes that piece N of the documents
 // runs, so that a crash or a hang is told at its line.
