@@ -45,7 +45,7 @@ aos::List<aos::ExactValue> exact_values(const Belief& belief, int decisions) {
 auto told_by_options(const Problem& problem, const Belief& belief) {
   aos::Sampler random{1};
   aos::OptionPolicy<TableModel> policy;
-  EXPECT(policy.prepare(belief, 1e6, 0, random).empty());
+  EXPECT(policy.prepare(belief, problem.horizon, 1e6, 0, random).empty());
   policy.search(belief, problem.horizon, random, {});
   return policy.estimates();
 }
@@ -66,7 +66,7 @@ TEST("A look that had no time is gone on with, whatever it takes") {
   const Belief belief = initial_belief(problem);
   aos::Sampler random{1};
   aos::OptionPolicy<TableModel> policy;
-  EXPECT(!policy.prepare(belief, 1e6, 1e-9, random).empty());
+  EXPECT(!policy.prepare(belief, problem.horizon, 1e6, 1e-9, random).empty());
   EXPECT(!policy.knows_ways());
   policy.look_on(random);
   EXPECT(policy.knows_ways());
@@ -95,7 +95,7 @@ TEST("The first look leaves time to count conditions, since the robot may leave 
   problem.conditions.push_back(0);
   aos::Sampler random{1};
   aos::OptionPolicy<TableModel> policy;
-  EXPECT(policy.prepare(initial_belief(problem), 1e5, 0, random).empty());
+  EXPECT(policy.prepare(initial_belief(problem), problem.horizon, 1e5, 0, random).empty());
 }
 
 // A thing is in one of 15 rooms, but not in the first one, where the robot is. No look pays for itself, and each step costs 1.
@@ -115,6 +115,45 @@ TEST("A robot looks elsewhere before it looks for ever where it knows that nothi
   }
   const auto estimates = told_by_options(problem, initial_belief(problem));
   EXPECT(estimates[go].q > estimates[look].q);
+}
+
+// A thing is in one of the rooms 1 to 19, and the robot, which can go to each of them, begins in room 0.
+TEST("Where a robot begins at a place without anything to see, what it can see elsewhere counts") {
+  constexpr std::uint32_t rooms = 20, looks = rooms, takes = rooms + 1, end = rooms * rooms;
+  Problem problem = world(end + 1, takes + 1, 0.98);
+  problem.endings[end] = 1;
+  hear(problem, 0.95);
+  start_evenly(problem, 1, rooms);
+  for (std::uint32_t state = 0; state < end; ++state) {
+    const std::uint32_t room = state / rooms, thing = state % rooms;
+    for (std::uint32_t to = 0; to < rooms; ++to) row(problem, state, to) = {{1.0, to * rooms + thing, 0, -0.5}};
+    row(problem, state, looks) = {{1.0, state, room == thing ? 1u : 2u, -0.1}};
+    row(problem, state, takes) = {{1.0, room == thing ? end : state, 0, room == thing ? 20.0 : -5.0}};
+  }
+  aos::Sampler random{1};
+  aos::OptionPolicy<TableModel> policy;
+  EXPECT(policy.prepare(initial_belief(problem), problem.horizon, 1e6, 0, random).empty());
+}
+
+// A bell ends the mission where all is ready, and else costs 5 at each step from then on. Bit 0: all is ready; bit 1: the bell was rung.
+TEST("What an option leaves behind counts up to the horizon") {
+  constexpr std::uint32_t ring = 1, end = 4;
+  Problem problem = world(end + 1, ring + 1, 0.98);
+  problem.endings[end] = 1;
+  problem.horizon = 20;
+  hear(problem, 0.9);
+  problem.starts = {{0, 0.1}, {1, 0.9}};
+  for (std::uint32_t state = 0; state < end; ++state) {
+    const bool is_ready = state & 1;
+    const double cost = state & 2 ? -5 : 0;
+    row(problem, state, look) = {{1.0, state, is_ready ? 1u : 2u, cost - 1}};
+    row(problem, state, ring) = {{1.0, is_ready ? end : state | 2u, 0, cost + (is_ready ? 10.0 : -1.0)}};
+  }
+  const Belief belief = initial_belief(problem);
+  const auto exact = exact_values(belief, 12);
+  EXPECT(exact[look].value > exact[ring].value + 1);
+  const auto estimates = told_by_options(problem, belief);
+  EXPECT(estimates[look].q > estimates[ring].q);
 }
 
 // A thing is in one of 48 places, of which a scan covers twelve. No scan makes any place worth a try. Another test tells for less what is of no use.
@@ -152,7 +191,7 @@ TEST("What a step earns that changes nothing is told apart from what ways earn")
     }
     aos::Sampler random{1};
     aos::OptionPolicy<TableModel> policy;
-    EXPECT(policy.prepare(initial_belief(problem), 1e5, 0, random).empty());
+    EXPECT(policy.prepare(initial_belief(problem), problem.horizon, 1e5, 0, random).empty());
     EXPECT(policy.earns_idle() == (idle > 0));
     EXPECT(!policy.earns_anyway());
   }
@@ -188,7 +227,7 @@ TEST("A reward that an action has earned does not count again where the mission 
   aos::OwnChanges<TableModel> changes;
   changes.measure(sampled.states(), library.cells(), steps, random);
   aos::OptionGains<TableModel> gains;
-  gains.measure(library, sampled, static_cast<double>(sampled.size()), changes, steps, random);
+  gains.measure(library, sampled, static_cast<double>(sampled.size()), changes, {}, steps, random);
   for (std::size_t k = 0; k < sampled.size(); ++k) {
     const bool is_one_done = sampled.states()[k].variables[0] + sampled.states()[k].variables[1] == 1;
     EXPECT(gains.best_in(k) >= 20);
@@ -308,7 +347,7 @@ TEST("A plain plan after which the mission goes on is told with what may still b
   const Belief belief = initial_belief(problem);
   aos::Sampler random{1};
   aos::OptionPolicy<TableModel> policy;
-  policy.prepare(belief, 1e6, 0, random);
+  policy.prepare(belief, problem.horizon, 1e6, 0, random);
   policy.search(belief, problem.horizon, random, {});
   const double seen = 10;  // at least one thing is there in three of four states
   policy.settle_for({look, -2, 0.1, 0}, 4, 20);

@@ -8,6 +8,7 @@
 
 #include "aos/base/stable_order.hpp"
 #include "aos/base/statistics.hpp"
+#include "aos/planning/options/later_costs.hpp"
 #include "aos/planning/options/optimal_stopping.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/option_sequels.hpp"
@@ -33,7 +34,7 @@ class OptionGains {
   // Takes each option from each state: twice where there are `even` states of the same weight, and the oftener the more a state
   // weighs. What changes by itself touches nothing. Options for which there is no time earn nothing. Of the steps a share is kept for
   // trying later which options can follow another.
-  void measure(const auto& library, const SampledBelief<Model>& belief, double even, const OwnChanges<Model>& changes, double& steps, Sampler& random) {
+  void measure(const auto& library, const SampledBelief<Model>& belief, double even, const OwnChanges<Model>& changes, const LaterCosts<Model>& later, double& steps, Sampler& random) {
     const List<State>& states = belief.states();
     *this = {};
     states_ = states.size();
@@ -47,8 +48,8 @@ class OptionGains {
       const auto length = static_cast<double>(way.size());
       KnownOption& option = options_.emplace_back(KnownOption{{none, none, std::pow(Model::discount, length), length}, way, none, std::vector<bool>(before_.size())});
       if (library.clock().is_over()) continue;
-      for (std::size_t k = 0; k < states_; ++k) take(option, k, states[k], tries[k], library, random);
-      steps -= all_tries * static_cast<double>(way.size());
+      for (std::size_t k = 0; k < states_; ++k) take(option, k, states[k], tries[k], later, library, random);
+      steps -= all_tries * static_cast<double>(way.size() + 2);
       option.ends = option.ends && !option.earns_without_end;
       for (std::size_t i = 0; i < before_.size(); ++i) option.changed[i] = option.changed[i] && !changes.is_worlds(i);
     }
@@ -189,14 +190,14 @@ class OptionGains {
     double earned;
   };
 
-  void take(KnownOption& option, std::size_t k, const State& start, int tries, const auto& library, Sampler& random) {
+  void take(KnownOption& option, std::size_t k, const State& start, int tries, const LaterCosts<Model>& later, const auto& library, Sampler& random) {
     library.cells().write(start, before_.data());
     SampleMean earned;
     double last = 0;
     for (int i = 0; i < tries; ++i) {
       State state = start;
       const OptionOutcome outcome = taken_option<Model>(option.way, state, random, library.retries());
-      earned.add(outcome.earned);
+      earned.add(outcome.earned + later.of(option.way.size(), start, state, random));
       last += outcome.last / tries;
       option.goes_on[k] += outcome.goes_on / tries;
       if (outcome.goes_on == 0) option.ends = true;

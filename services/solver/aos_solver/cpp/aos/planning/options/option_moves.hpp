@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aos/planning/budget.hpp"
+#include "aos/planning/options/later_costs.hpp"
 #include "aos/planning/options/option_regret.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/option_tests.hpp"
@@ -19,8 +20,8 @@ class OptionMoves {
   static constexpr std::size_t few = 16;  // each is tried several times in a row
 
   OptionMoves(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret, const OptionTests<Model>& tests,
-              const OptionValues<Model>& values)
-      : belief_(belief), regret_(regret), tests_(tests), values_(values) {}
+              const OptionValues<Model>& values, const LaterCosts<Model>& later)
+      : belief_(belief), regret_(regret), tests_(tests), values_(values), later_(later) {}
 
   // Adds each of the moves, once or several times in a row, the latter while there are steps.
   void add_to(List<OptionCandidate>& candidates, const List<int>& moves, double& steps, Sampler& random) {
@@ -118,6 +119,7 @@ class OptionMoves {
     }
     const double share = belief_.mean(goes_on);
     if (share < 0.5) return;
+    earned += belief_.mean([&](std::size_t k) { return later_.of(way.size(), belief_.states()[k], now[k], random); });
     const auto last = share < 1 - 1e-9 ? RepeatedObservation{List<StepReports>{}} : RepeatedObservation::at_last(reports);
     if (!last.is_listed(1)) steps -= way.size() * OptionTests<Model>::steps_of_weighing(now.size());
     const auto told = regret_.after(last, 1, belief_.weights(), steps, random, [&](std::size_t k, StateWeights& weights) {
@@ -137,6 +139,7 @@ class OptionMoves {
   const OptionRegret<Model>& regret_;
   const OptionTests<Model>& tests_;
   const OptionValues<Model>& values_;
+  const LaterCosts<Model>& later_;
   ReportedStep<Model> step_;
 };
 

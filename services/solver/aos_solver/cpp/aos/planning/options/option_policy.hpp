@@ -39,7 +39,7 @@ class OptionPolicy {
   static constexpr double of_options = 0.4;  // of the affordable steps: to find options and what they earn
 
   // Draws states and finds options within so many steps of the model, and so many seconds if these are above 0. Returns why this policy cannot decide; empty if it can.
-  std::string prepare(const Belief<Model>& belief, double affordable, double seconds, Sampler random) {
+  std::string prepare(const Belief<Model>& belief, int horizon, double affordable, double seconds, Sampler random) {
     taken_ = 0;
     twins_.forget();
     if (belief.probability_of(Ending::running) <= 0) return "the mission is over";
@@ -62,7 +62,8 @@ class OptionPolicy {
     if (switches::own_ways) library_.look_first_at_own(changes_);
     const double found = find_ways(left, random);
     clock_.end_at(of_gains);
-    gains_.measure(library_, belief_, states, changes_, left, random);
+    later_.begin(horizon, changes_.idle_action());
+    gains_.measure(library_, belief_, states, changes_, later_, left, random);
     if (switches::deadlines) gains_.end_after(steps_to_deadline(belief_, library_.running_down(), random));
     taken_ = of_options * affordable_ - left;
     std::string obstacle = found < (switches::enough_ways ? enough_found : 1e-9) ? "no way to a reward is found from most states" : "";
@@ -204,9 +205,20 @@ class OptionPolicy {
     double left = 0;
     clock_.end_at(of_all);
     const bool is_whole = tests_.observe_all({}, left, random);
+    const bool observes = !is_whole || !tests_.empty() || tests_.has_answers();
+    const bool only_changes = !observes && tests_.moves().size() > OptionMoves<Model>::few && !sees_elsewhere(left, random);
     taken_ -= left;
-    const bool only_changes = is_whole && tests_.empty() && tests_.moves().size() > OptionMoves<Model>::few;
     return only_changes ? "nothing is observed but by what changes the state" : "";
+  }
+
+  // Whether something can be observed after one of a few moves, as where a robot begins at a place without anything to see.
+  bool sees_elsewhere(double& left, Sampler& random) {
+    const List<int>& moves = tests_.moves();
+    const std::size_t stride = std::max<std::size_t>(moves.size() / OptionMoves<Model>::few, 1);
+    for (std::size_t i = 0; i < moves.size(); i += stride) {
+      if (moves_.best_view(moves[i], {}, left, random).test >= 0) return true;
+    }
+    return false;
   }
 
   // The moves that are tried. Where all are many, those that earn nothing at once are, if they are few; then they only serve
@@ -393,7 +405,8 @@ class OptionPolicy {
   OptionTests<Model> tests_{belief_, regret_, changes_, twins_, clock_};
   TestPlans<Model> plans_{belief_, gains_, tests_};
   OptionValues<Model> values_{library_, clock_};
-  OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
+  LaterCosts<Model> later_;
+  OptionMoves<Model> moves_{belief_, regret_, tests_, values_, later_};
   OptionDetours<Model> detours_{belief_, gains_, clock_};
   bool was_idle_ = true;  // at the last decision; steps are kept for detours then
   OptionPairs<Model> pairs_{belief_, regret_, tests_, clock_};

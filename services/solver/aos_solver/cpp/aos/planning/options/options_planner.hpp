@@ -92,7 +92,7 @@ class OptionsPlanner final : public Planner<Model> {
     else time.emplace(choosing);
     const auto start = PlanningClock::now();
     const double affordable = affordable_.of(budget, question.horizon);
-    std::string obstacle = policy_.prepare(question.belief, affordable, budget.seconds, random);
+    std::string obstacle = policy_.prepare(question.belief, question.horizon, affordable, budget.seconds, random);
     affordable_.note(policy_.taken(), PlanningClock::now() - start);
     if (!obstacle.empty()) return obstacle;
     const ForgottenTexts forgotten;

@@ -61,9 +61,12 @@ class OwnChanges {
     earns_anyway_ = is_most(std::accumulate(earning.begin(), earning.end(), std::size_t{0}), actions * states.size());
     earns_idle_ = false;
     double idle = -std::numeric_limits<double>::infinity();
+    idle_action_ = -1;
     for (std::size_t a = 0; a < actions; ++a) {
       earns_idle_ |= !moves_[a] && is_most(earning[a], states.size());
-      if (!moves_[a]) idle = std::max(idle, rewards[a]);
+      if (moves_[a] || rewards[a] <= idle) continue;
+      idle = rewards[a];
+      idle_action_ = static_cast<int>(a);
     }
     idle_cost_ = std::isfinite(idle) ? std::max(-idle, 0.0) : 0;
   }
@@ -78,6 +81,8 @@ class OwnChanges {
   bool earns_idle() const { return earns_idle_; }
   // What a step costs at least that changes nothing.
   double idle_cost() const { return idle_cost_; }
+  // The action of such a step; -1 without one.
+  int idle_action() const { return idle_action_; }
   // Whether a variable changes by itself, and no action changes it. Of one that was found after `measure` this is not known.
   bool is_worlds(std::size_t variable) const { return variable < is_worlds_.size() && is_worlds_[variable] && !is_changed_[variable]; }
 
@@ -137,6 +142,7 @@ class OwnChanges {
   bool earns_anyway_ = false;
   bool earns_idle_ = false;
   double idle_cost_ = 0;
+  int idle_action_ = -1;
   std::vector<bool> moves_;       // by action
   std::vector<bool> is_changed_;  // by variable
   std::vector<bool> is_worlds_;   // by variable
