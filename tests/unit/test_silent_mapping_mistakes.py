@@ -145,6 +145,7 @@ def test_keys_that_no_value_of_an_enum_has_and_values_without_a_key_are_told():
         ("'3' < steps", ["`steps` is of the type int, and '3' is a text"]),
         ("place == 3", ["`place` is a text, and 3 is none"]),
         ("steps == 3 and place == '3' and steps in ('3', 3) and many == '3'", []),
+        ("isinstance(steps, str) and steps == '3'", []),
     ],
 )
 def test_a_number_compared_with_a_text_in_a_mapping_is_told(rule, told):

@@ -40,6 +40,7 @@ def check_value_uses(
         nodes = list(ast.walk(tree))
         own = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
         own |= {node.arg for node in nodes if isinstance(node, ast.arg)}
+        own |= {name for node in nodes for name in _asked_for_type(node)}
         known = {name: enum for name, enum in enums.items() if name not in own}
         known_plain = {name: kind for name, kind in plain.items() if name not in own}
         fields = {name: compound for name, compound in compounds.items() if name not in own}
@@ -160,6 +161,13 @@ def _tested(node: ast.AST) -> Iterator[ast.AST]:
             yield part
         case ast.UnaryOp(op=ast.Not(), operand=part):
             yield part
+
+
+def _asked_for_type(node: ast.AST) -> Iterator[str]:
+    """Yields the name of a value whose type the code asks for: it is written for more than one."""
+    match node:
+        case ast.Call(func=ast.Name(id="isinstance" | "type"), args=[ast.Name(id=name), *_]):
+            yield name
 
 
 def _unlike(node: ast.AST, kinds: dict[str, str]) -> Iterator[tuple[ast.expr, str, str]]:
