@@ -34,6 +34,7 @@ _OPTIONS = (
     "past_ends",
     "wide_ways",
     "own_ways",
+    "drifting",
     "later_costs",
     "moved_by_ways",
     "reported_worlds",

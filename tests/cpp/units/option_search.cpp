@@ -133,6 +133,38 @@ TEST("A search for ways goes by what the robot changes, and not by the wind") {
   EXPECT(steps_to_a_way(problem, true) < 0.7 * steps_to_a_way(problem, false));
 }
 
+// A level that each of three actions moves by -1, 0 or 1, each by other luck than the next one. The last action raises it by as much as `raised` besides.
+Problem drifting(std::uint32_t raised) {
+  constexpr std::uint32_t levels = 60;
+  Problem problem = world(levels, 3, 0.95);
+  start_evenly(problem, 20, 40);
+  for (std::uint32_t level = 1; level + 3 < levels; ++level) {
+    for (std::uint32_t action = 0; action < 3; ++action) {
+      auto& outcomes = row(problem, level, action);
+      outcomes.clear();
+      for (std::uint32_t n = 0; n < 3; ++n) outcomes.push_back({1.0 / 3, level - 1 + (action + n) % 3 + (action == 2 ? raised : 0), 0, -0.1});
+    }
+  }
+  return problem;
+}
+
+TEST("What chance changes after all actions alike is the world's, though each action draws it by itself, and what one of them raises is not") {
+  for (const std::uint32_t raised : {0U, 1U}) {
+    const Problem problem = drifting(raised);
+    const Belief belief = initial_belief(problem);
+    aos::Sampler random{1};
+    aos::LeafCells<TableModel> cells;
+    cells.prepare(belief, random);
+    aos::SampledBelief<TableModel> sampled;
+    sampled.draw(belief, 20, random);
+    double steps = 0;
+    aos::OwnChanges<TableModel> changes;
+    changes.measure(sampled.states(), cells, steps, random);
+    EXPECT_EQUAL(changes.is_worlds(0), raised == 0);
+    EXPECT_EQUAL(changes.is_move(2), raised == 1);
+  }
+}
+
 TEST("Where the world has to change before anything is earned, a search for ways waits for it") {
   Problem tides = world(7, 2, 0.95);
   tides.endings[6] = 1;

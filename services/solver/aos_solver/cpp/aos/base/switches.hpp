@@ -13,7 +13,7 @@
   /* which planner decides */ \
   of(lists) of(estimated_draws) of(exact) of(near_states) of(belief_tree) of(options) of(savings) of(seek) \
   /* options */ \
-  of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways) of(detours) of(alike_states) of(twins) of(sequels) of(past_ends) of(wide_ways) of(own_ways) of(later_costs) of(moved_by_ways) of(reported_worlds) of(idle_income) of(test_plans) of(raked_states) of(deadlines) \
+  of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways) of(detours) of(alike_states) of(twins) of(sequels) of(past_ends) of(wide_ways) of(own_ways) of(drifting) of(later_costs) of(moved_by_ways) of(reported_worlds) of(idle_income) of(test_plans) of(raked_states) of(deadlines) \
   /* savings */ \
   of(saving_lookahead) of(saving_rollouts) of(later_attention) \
   /* SARSOP */ \

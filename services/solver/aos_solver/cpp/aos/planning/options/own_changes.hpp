@@ -2,9 +2,12 @@
 //
 // All actions are taken from a state with the same random numbers. What most of them do alike is the world's doing: a model
 // need not say what changes by itself. What actions of few skills do alike is theirs, however many actions they have. An action
-// changes a variable where its result is another one.
+// changes a variable where its result is another one. What drifts in the code of each skill draws other numbers there: that all
+// actions change it alike is told by how often and how far, over the states.
 #pragma once
 
+#include "aos/base/statistics.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
 
 namespace aos {
@@ -39,6 +42,7 @@ class OwnChanges {
     start_.resize(cells.size());
     after_.resize(actions * cells.size());
     ends_.resize(actions);
+    is_own_.assign(actions * cells.size(), false);
     List<std::size_t> earning(actions);
     List<double> rewards(actions);
     for (const State& state : states) {
@@ -57,6 +61,13 @@ class OwnChanges {
       compare(cells.size());
     }
     steps -= actions * states.size();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const bool is_drift = switches::drifting && may_drift(i) && drifts(i, states, cells, steps, random);
+      is_worlds_[i] = is_worlds_[i] || is_drift;
+      for (std::size_t a = 0; a < actions; ++a) {
+        if (is_own_[a * cells.size() + i] && !is_drift) moves_[a] = is_changed_[i] = true;
+      }
+    }
     const auto is_most = [](std::size_t count, std::size_t all) { return static_cast<double>(count) >= most_actions * static_cast<double>(all); };
     earns_anyway_ = is_most(std::accumulate(earning.begin(), earning.end(), std::size_t{0}), actions * states.size());
     earns_idle_ = false;
@@ -87,6 +98,14 @@ class OwnChanges {
   bool is_worlds(std::size_t variable) const { return variable < is_worlds_.size() && is_worlds_[variable] && !is_changed_[variable]; }
 
  private:
+  // Of what may drift:
+  static constexpr std::size_t tries = 4;      // of each action from each state
+  static constexpr double fewest = 64;         // tries that tell how often and how far
+  static constexpr double least_drift = 0.2;   // of the tries, after each action
+  static constexpr double far = 8;             // cells: what is farther counts as that
+  static constexpr double most_errors = 4;     // between actions that do alike
+  static constexpr double least_spread = 0.1;  // of a change, so that two seldom ones may differ
+
   void compare(std::size_t variables) {
     const std::size_t actions = moves_.size();
     const std::uint64_t by_most = value_in_common([&](std::size_t a) { return ends_[a]; }, actions, 0);
@@ -102,11 +121,46 @@ class OwnChanges {
       const std::uint64_t by_itself = value_of_most_skills(alike, value, start_[i]);
       if (by_itself != start_[i]) is_worlds_[i] = true;
       for (std::size_t a = 0; a < actions; ++a) {
-        if (value(a) == by_itself) continue;
-        moves_[a] = true;
-        is_changed_[i] = true;
+        is_own_[a * variables + i] = is_own_[a * variables + i] || value(a) != by_itself;
       }
     }
+  }
+
+  // Whether some action changes a variable in its own way, and all of them or the world do change it.
+  bool may_drift(std::size_t variable) const {
+    std::size_t own = 0;
+    for (std::size_t a = 0; a < moves_.size(); ++a) own += is_own_[a * is_changed_.size() + variable] ? 1 : 0;
+    return own > 0 && (is_worlds_[variable] || own == moves_.size());
+  }
+
+  // Whether chance changes a variable after each action, and after all of them as often and as far.
+  bool drifts(std::size_t variable, const List<State>& states, const LeafCells<Model>& cells, double& steps, Sampler random) {
+    List<SampleMean> changes(moves_.size()), distances(moves_.size());  // by action
+    for (std::size_t a = 0; a < moves_.size(); ++a) {
+      for (std::size_t i = 0; i < tries * states.size(); ++i) {
+        State next = states[i % states.size()];
+        cells.write(next, start_.data());
+        Model::step(next, a, random);
+        if (Model::ending(next) != Ending::running) continue;
+        cells.write(next, after_.data());
+        const auto distance = static_cast<double>(static_cast<std::int64_t>(after_[variable] - start_[variable]));
+        changes[a].add(distance != 0 ? 1 : 0);
+        distances[a].add(std::clamp(distance, -far, far));
+      }
+      steps -= tries * states.size();
+      if (changes[a].count() < fewest || changes[a].mean() < least_drift) return false;
+    }
+    return differ_by_chance(changes) && differ_by_chance(distances);
+  }
+
+  static bool differ_by_chance(const List<SampleMean>& means) {
+    SampleMean all, spread;
+    for (const SampleMean& mean : means) {
+      all.add(mean.mean());
+      spread.add(mean.deviation());
+    }
+    const double error = most_errors * std::max(spread.mean(), least_spread);
+    return std::ranges::all_of(means, [&](const SampleMean& mean) { return std::abs(mean.mean() - all.mean()) <= error / std::sqrt(mean.count()); });
   }
 
   // The value that most of the actions lead to, or else most of the others, if it is one of most skills; without one the value before.
@@ -150,6 +204,7 @@ class OwnChanges {
   List<std::uint64_t> start_;
   List<std::uint64_t> after_;  // [action * variables + variable]
   List<std::uint64_t> ends_;   // by action
+  std::vector<bool> is_own_;   // [action * variables + variable]: a change that not most actions make
 };
 
 }
