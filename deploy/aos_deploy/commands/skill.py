@@ -3,7 +3,6 @@
 import asyncio
 import json
 import time
-from functools import partial
 from typing import Annotated, Any
 
 import msgspec
@@ -117,8 +116,10 @@ def call(
                 raise
             finally:
                 telling.cancel()
-        as_text = partial(json.dumps, indent=2, default=str)  # People see NaN and bytes as they are.
-        typer.echo((msgspec.json.encode if as_json else as_text)(result.fields))
+        if as_json:
+            typer.echo(msgspec.json.encode(result.fields))
+        else:  # People see NaN and bytes as they are.
+            typer.echo(json.dumps(result.fields, indent=2, default=str))
 
     system.do(work)
 

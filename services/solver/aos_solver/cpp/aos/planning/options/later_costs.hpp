@@ -13,6 +13,7 @@ template <class Model>
 class LaterCosts {
  public:
   using State = typename Model::State;
+  static constexpr double steps_of_looking = 2;  // of the model, where it is no dearer later
 
   // For missions of so many steps, in which an action changes nothing and costs least among such; -1 without one.
   void begin(int horizon, int idle_action) {

@@ -49,7 +49,7 @@ class OptionGains {
       KnownOption& option = options_.emplace_back(KnownOption{{none, none, std::pow(Model::discount, length), length}, way, none, std::vector<bool>(before_.size())});
       if (library.clock().is_over()) continue;
       for (std::size_t k = 0; k < states_; ++k) take(option, k, states[k], tries[k], later, library, random);
-      steps -= all_tries * static_cast<double>(way.size() + 2);
+      steps -= all_tries * (static_cast<double>(way.size()) + LaterCosts<Model>::steps_of_looking);
       option.ends = option.ends && !option.earns_without_end;
       for (std::size_t i = 0; i < before_.size(); ++i) option.changed[i] = option.changed[i] && !changes.is_worlds(i);
     }

@@ -120,6 +120,7 @@ class OptionMoves {
     const double share = belief_.mean(goes_on);
     if (share < 0.5) return;
     earned += belief_.mean([&](std::size_t k) { return later_.of(way.size(), belief_.states()[k], now[k], random); });
+    steps -= LaterCosts<Model>::steps_of_looking * now.size();
     const auto last = share < 1 - 1e-9 ? RepeatedObservation{List<StepReports>{}} : RepeatedObservation::at_last(reports);
     if (!last.is_listed(1)) steps -= way.size() * OptionTests<Model>::steps_of_weighing(now.size());
     const auto told = regret_.after(last, 1, belief_.weights(), steps, random, [&](std::size_t k, StateWeights& weights) {

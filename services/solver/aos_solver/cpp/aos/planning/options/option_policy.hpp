@@ -205,8 +205,7 @@ class OptionPolicy {
     double left = 0;
     clock_.end_at(of_all);
     const bool is_whole = tests_.observe_all({}, left, random);
-    const bool observes = !is_whole || !tests_.empty() || tests_.has_answers();
-    const bool only_changes = !observes && tests_.moves().size() > OptionMoves<Model>::few && !sees_elsewhere(left, random);
+    const bool only_changes = is_whole && tests_.empty() && tests_.moves().size() > OptionMoves<Model>::few && !sees_elsewhere(left, random);
     taken_ -= left;
     return only_changes ? "nothing is observed but by what changes the state" : "";
   }

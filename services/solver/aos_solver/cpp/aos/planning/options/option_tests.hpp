@@ -50,7 +50,6 @@ class OptionTests {
     informations_.assign(actions, 0);
     tests_.clear();
     moves_.clear();
-    has_answers_ = false;
     const DecisionClock::Slice half(clock_, clock_.left_s() / 2);
     const std::size_t first = first_;
     bool is_whole = true;
@@ -72,7 +71,6 @@ class OptionTests {
         return step_.take(state, a, reports_[a][k], steps, random);
       });
       steps -= steps_of_weighing(belief_.size());
-      has_answers_ = has_answers_ || std::ranges::any_of(reports_[a], [](const StepReports& of_state) { return of_state.branches().size() > 1; });
       informations_[a] = information(belief_.weights(), reports_[a], random);
       if (informations_[a] <= least_information) continue;
       const bool is_priced = twins_.are_known() && twins_.tells_of_options(static_cast<int>(a), reports_[a], steps, random);
@@ -83,8 +81,6 @@ class OptionTests {
   }
 
   bool empty() const { return tests_.empty(); }
-  // Whether an action that is no move may report one thing or another, whether that tells anything now or not.
-  bool has_answers() const { return has_answers_; }
   const List<Test>& tests() const { return tests_; }
   // What a nat costs, with the time that it takes, by the test where it is cheapest; infinite without a test.
   double price_of_nat(double value_seen, bool of_options = false) const {
@@ -149,7 +145,6 @@ class OptionTests {
   List<double> informations_;               // by action
   List<Test> tests_;
   List<int> moves_;
-  bool has_answers_ = false;
   std::size_t first_ = 0;  // action that is observed
 };
 
